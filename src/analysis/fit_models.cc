@@ -62,10 +62,9 @@ void ApplySharedWarnings(const FitReport& richest_fit, FitReport& fit) {
     return warning.code == "not_a_pendulum" || warning.code == "offset_jumps";
   });
   if (said == richest_fit.warnings.end() || fit.termination == Termination::kFailed) return;
-  fit.termination = Termination::kNotConverged;
-  fit.reason = MessageText(*said);
+  const char* const without_errors = said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum";
+  Reject(Termination::kNotConverged, MessageText(*said), without_errors, fit);
   fit.reason_code = said->code;
-  WithdrawErrors(said->code == "offset_jumps" ? "the zero jumps" : "not a pendulum", fit);
 }
 
 /// Reports that the fit of a model begins. A model that is fitted again has no place in the count.

@@ -178,9 +178,10 @@ double CommonStdDev(std::string_view name, const std::vector<RunAlone>& runs, co
   return std::sqrt(square);
 }
 
-/// How much a parameter changes within all recordings that were tested.
+/// How much a parameter changes within all recordings that were tested. `parts` are those of the largest change.
 Change CommonChange(std::string_view name, const std::vector<RunAlone>& runs) {
   Change common{name, 0, ""};
+  double largest = 0;
   common.std_dev =
       CommonStdDev(name, runs, [&](const RunAlone& run, const ParameterEstimate&) -> std::optional<double> {
         const Constancy* const constancy = run.constancy;
@@ -188,7 +189,8 @@ Change CommonChange(std::string_view name, const std::vector<RunAlone>& runs) {
         const std::vector<Change> changes = Changes(*constancy, run.fit);
         const auto change = std::ranges::find(changes, name, &Change::name);
         if (change == changes.end()) return 0;
-        if (common.parts.empty()) common.parts = change->parts;
+        if (change->std_dev > largest) common.parts = change->parts;
+        largest = std::max(largest, change->std_dev);
         return change->std_dev;
       });
   return common;

@@ -45,10 +45,10 @@ std::string DegreesOfFreedomText(int degrees) {
 }
 
 std::string Quoted(std::string_view text) {
-  constexpr std::size_t kShown = 40;
+  constexpr std::size_t most = 40;
   std::string shown = "\"";
   std::size_t i = 0;
-  for (; i < text.size() && shown.size() <= kShown; ++i) {
+  for (; i < text.size() && shown.size() <= most; ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     if (const std::size_t size = SizeOfLetterBeyondAscii(text.substr(i)); size > 0) {
       shown += text.substr(i, size);
@@ -77,13 +77,12 @@ std::string ShellWord(const std::string& word) {
   return "'" + quoted + "'";
 }
 
-std::string ListWithAnd(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 8;
+std::string ListWithAnd(const std::vector<std::string>& names, std::size_t most) {
   std::string list;
-  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
     list += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
   }
-  return list + (names.size() > kShown ? ", ..." : "");
+  return list + (names.size() > most ? ", ..." : "");
 }
 
 }  // namespace pendulum

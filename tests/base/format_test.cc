@@ -73,6 +73,7 @@ TEST(ListWithAnd, NamesTheFirstEight) {
   EXPECT_EQ(ListWithAnd({"inertia", "viscous"}), "inertia and viscous");
   EXPECT_EQ(ListWithAnd({"1", "2", "3", "4", "5", "6", "7", "8"}), "1, 2, 3, 4, 5, 6, 7 and 8");
   EXPECT_EQ(ListWithAnd({"1", "2", "3", "4", "5", "6", "7", "8", "9"}), "1, 2, 3, 4, 5, 6, 7, 8, ...");
+  EXPECT_EQ(ListWithAnd({"1", "2", "3", "4", "5", "6", "7", "8", "9"}, 9), "1, 2, 3, 4, 5, 6, 7, 8 and 9");
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ namespace pendulum {
 /// estimate, beyond their errors, and at least that of the trend; if windows show no change, that of the halves. It is
 /// at least half of a significant difference between the halves (MODEL.md section 9). Recordings of one rig change in
 /// the same way, so their number does not reduce it: of several it is the root mean square, weighted with 1 /
-/// std_error² of their fits alone. Recordings that are too short for a test of their own do not count there. If the
+/// std_error² of their fits alone, or equally if none of them determines the parameter. Recordings that are too short
+/// for a test of their own do not count there. If the
 /// recordings differ by more than their errors (p < Homogeneity::kDisagree), the error is at least their standard
 /// deviation `between` (MODEL.md eq. (10.5)).
 ///

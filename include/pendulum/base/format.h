@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +48,7 @@ std::string NameList(const Range& items) {
   return list;
 }
 
-/// "A, B and C"; only the first eight if there are more.
-std::string ListWithAnd(const std::vector<std::string>& names);
+/// "A, B and C"; only the first ones if there are more than `most`.
+std::string ListWithAnd(const std::vector<std::string>& names, std::size_t most = 8);
 
 }  // namespace pendulum

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "pendulum/base/format.h"
 
@@ -104,7 +105,8 @@ void CheckAlternativeMinima(const FitProblem& problem, std::span<const Alternati
     known.direction = {known.parameter};
     known.advice = MeasurementFor(known.parameter);
   }
-  Reject(Termination::kNotIdentifiable, std::move(ambiguous), "the fit is not_identifiable", report);
+  const std::string without_errors = "the fit is " + std::string(TerminationName(Termination::kNotIdentifiable));
+  RejectFor(Termination::kNotIdentifiable, std::move(ambiguous), without_errors, report);
 }
 
 }  // namespace pendulum

@@ -38,11 +38,16 @@ std::string NotIdentifiableReason(const SolvedFit& fit, const std::vector<int>& 
   std::vector<std::string> all;
   all.reserve(direction.size());
   for (const int i : direction) all.push_back(fit.NameOf(i));
-  const std::string names = ListWithAnd(all);
+  const std::string names = ListWithAnd(all, all.size());
   if (fit.runs.size() > 1)
     return "the recordings together do not determine " + names + "; fix or share more parameters";
   return direction.size() == 1 ? "the recording does not depend on " + names + "; fix it"
                                : "the recording determines only a combination of " + names + "; fix one of them";
+}
+
+/// The reason with the number of its recording, if there are several.
+std::string OfRecording(const SolvedFit& fit, std::size_t k, const std::string& reason) {
+  return (fit.runs.size() > 1 ? "recording " + std::to_string(k + 1) + ": " : "") + reason;
 }
 
 std::string Percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
@@ -63,7 +68,7 @@ std::string UnexplainedShares(const FitParts& parts) {
 std::string SharedNames(const SolvedFit& fit) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < fit.shared; ++i) names.push_back(fit.NameOf(static_cast<int>(i)));
-  return ListWithAnd(names);
+  return ListWithAnd(names, names.size());
 }
 
 /// Why the trajectories are not those of the readings; empty if they explain enough.
@@ -85,14 +90,14 @@ std::string UnexplainedReason(const FitParts& parts) {
          " choose a window of free swing with --from and --to";
 }
 
-/// Why a joint fit is invalid that starts from these separate fits: the friction parameters have the wrong order, or
-/// one has a second solution, which the other recordings do not exclude.
+/// Why a joint fit is invalid: the friction parameters have the wrong order, or a separate fit has a second solution,
+/// which the other recordings do not exclude.
 std::string InvalidJointReason(const FitParts& parts) {
   for (std::size_t k = 0; k < parts.alone.size(); ++k) {
     const FittedRun& run = parts.fit.runs[k];
     if (std::string why = OrderViolation(run.problem, run.solution.parameters); !why.empty()) return why;
     const FitReport& alone = *parts.alone[k];
-    if (alone.HasWarning("ambiguous_sensor")) return "recording " + std::to_string(k + 1) + ": " + alone.reason;
+    if (alone.HasWarning("ambiguous_sensor")) return OfRecording(parts.fit, k, alone.reason);
   }
   return "";
 }
@@ -148,7 +153,8 @@ std::string TooShortReason(const SolvedFit& fit) {
   double periods = 0;
   for (const FittedRun& run : fit.runs) periods = std::max(periods, PeriodsOf(run));
   if (periods >= kMinPeriods) return "";
-  return "the motion lasts only " + NumberText(periods, 2) +
+  return std::string(fit.runs.size() > 1 ? "in every recording " : "") + "the motion lasts only " +
+         NumberText(periods, 2) +
          " of a period of the best trajectory, too little to determine the pendulum; record several periods, or choose "
          "a window of free swing with --from and --to";
 }
@@ -158,7 +164,7 @@ std::string ImplausibleReasonOf(const FitParts& parts) {
   for (std::size_t k = 0; k < parts.fit.runs.size(); ++k) {
     const FittedRun& run = parts.fit.runs[k];
     std::string why = ImplausibleReason(run.problem, run.solution, parts.described[k].correlated);
-    if (!why.empty()) return (parts.fit.runs.size() > 1 ? "recording " + std::to_string(k + 1) + ": " : "") + why;
+    if (!why.empty()) return OfRecording(parts.fit, k, why);
   }
   return "";
 }
@@ -167,8 +173,9 @@ std::string NotAtMinimumReason(const FitParts& parts, double shift) {
   for (std::size_t k = 0; k < parts.fit.runs.size(); ++k) {
     const FittedRun& run = parts.fit.runs[k];
     if (!IsAtKink(run.problem, parts.described[k].trace, run.solution)) continue;
-    return "the best trajectory stops just before another half swing would begin, where the sum of squares has a kink; "
-           "end the window before the stop (--to) or choose another model";
+    return OfRecording(parts.fit, k,
+                       "the best trajectory stops just before another half swing would begin, where the sum of squares "
+                       "has a kink; end the window before the stop (--to) or choose another model");
   }
   return "the estimates are still " +
          (shift < 10 ? NumberText(shift, 2) : std::to_string(std::lround(std::min(shift, 1e6)))) +

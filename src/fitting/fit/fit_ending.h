@@ -18,6 +18,7 @@ struct Ending {
 };
 
 /// Judges the solution of a fit to K recordings by what it leaves unexplained, its plausibility and the remaining step.
+/// A trajectory that does not explain the readings comes before parameters that these do not determine.
 /// described: K. alone: the fits of each of several recordings alone; none for one recording.
 Ending EndingOf(const SolvedFit& fit, const Optimum& optimum, const std::vector<Description>& described,
                 const std::vector<const FitReport*>& alone);

@@ -27,16 +27,19 @@ const ParameterEstimate* FitReport::Find(std::string_view name) const {
 
 bool FitReport::HasWarning(WarningCode code) const { return pendulum::HasWarning(warnings, code); }
 
-const Warning* FitReport::ReasonWarning() const {
-  return reason_code ? FindWarning(warnings, *reason_code) : nullptr;
+const Warning* FitReport::ReasonWarning() const { return reason_code ? FindWarning(warnings, *reason_code) : nullptr; }
+
+void Reject(Termination termination, std::string reason, std::string_view without_errors, FitReport& fit) {
+  fit.termination = termination;
+  fit.reason = std::move(reason);
+  fit.reason_code.reset();
+  WithdrawErrors(without_errors, fit);
 }
 
-void Reject(Termination termination, Warning why, std::string_view without_errors, FitReport& fit) {
-  fit.termination = termination;
-  fit.reason = MessageText(why);
+void RejectFor(Termination termination, Warning why, std::string_view without_errors, FitReport& fit) {
+  Reject(termination, MessageText(why), without_errors, fit);
   fit.reason_code = why.code;
   fit.warnings.push_back(std::move(why));
-  WithdrawErrors(without_errors, fit);
 }
 
 void WithdrawErrors(std::string_view why, FitReport& fit) {

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "pendulum/base/try.h"
-#include "pendulum/fitting/solve/maximum_likelihood.h"
-#include "pendulum/fitting/solve/optimum.h"
 #include "pendulum/fitting/solve/search.h"
 #include "pendulum/fitting/solve/trace_error.h"
 #include "pendulum/trajectory/tolerance.h"
@@ -184,6 +182,9 @@ Result<JointProblem> MakeJointProblem(std::span<const JointRun> runs, const std:
   if (runs.size() < 2) {
     return Error(StatusCode::kInvalidArgument, "a joint fit needs two recordings or more; " +
                                                    std::string(runs.empty() ? "there is none" : "there is one"));
+  }
+  if (runs.front().options.interval == IntervalMethod::kBootstrap) {
+    return Error(StatusCode::kInvalidArgument, "bootstrap intervals are only for the fit to a single recording");
   }
   RETURN_IF_ERROR(CheckSameModelAndRig(runs));
   JointProblem joint;

@@ -126,23 +126,38 @@ void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, F
   if (is_likelihood && NeedsProfiles(fit, state.optimum, errors)) SetProfileIntervals(fit, state.optimum, reports);
 }
 
-/// Removes the errors of static friction and of its reference rate where the readings do not show how friction falls
-/// from one to the other: the two then stand for any curve of the same slope, and an error would promise too much.
-void WithdrawUnseenStiction(const FitProblem& problem, FitReport& report) {
+/// Whether the readings show how friction falls from its static to its sliding value.
+bool IsStictionSeen(const FitProblem& problem, const FitReport& report) {
   constexpr double kResolved = 0.25;
-  if (problem.solve.small_swing_parameters.empty()) return;
   const ParameterEstimate& rate = report.parameters[static_cast<std::size_t>(problem.solve.last_friction)];
   const bool is_narrow = rate.std_error && *rate.std_error <= kResolved * std::abs(rate.estimate);
   const bool is_closed = rate.lower95 && *rate.lower95 > rate.info.lower && rate.upper95;
-  if (rate.fixed || (is_narrow && is_closed)) return;
-  for (const int i : problem.solve.small_swing_parameters) {
-    ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
-    if (parameter.fixed) continue;
-    parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
-    parameter.systematic = {};
-    parameter.open_interval = OpenInterval::kClosed;
-    parameter.reason = "the readings do not show at which rate friction falls to its sliding value";
-    std::erase_if(report.profiles, [&](const ProfileCurve& curve) { return curve.name == parameter.info.name; });
+  return rate.fixed || (is_narrow && is_closed);
+}
+
+/// Removes the errors of static friction and of its reference rate where no readings show how friction falls from one
+/// to the other: the two then stand for any curve of the same slope, and an error would promise too much. A parameter
+/// that all recordings share keeps its error if one of them shows it.
+void WithdrawUnseenStiction(FitState& state) {
+  const std::vector<FittedRun>& runs = state.fit.runs;
+  if (runs.front().problem.solve.small_swing_parameters.empty()) return;
+  std::vector<bool> seen;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    seen.push_back(IsStictionSeen(runs[k].problem, state.descriptions[k].report));
+  }
+  const bool is_seen_in_any = std::ranges::find(seen, true) != seen.end();
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    FitReport& report = state.descriptions[k].report;
+    for (const int i : runs[k].problem.solve.small_swing_parameters) {
+      ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(i)];
+      const bool is_shared = static_cast<std::size_t>(runs[k].at[static_cast<std::size_t>(i)]) < state.fit.shared;
+      if (parameter.fixed || (is_shared ? is_seen_in_any : seen[k])) continue;
+      parameter.std_error = parameter.lower95 = parameter.upper95 = std::nullopt;
+      parameter.systematic = {};
+      parameter.open_interval = OpenInterval::kClosed;
+      parameter.reason = "the readings do not show at which rate friction falls to its sliding value";
+      std::erase_if(report.profiles, [&](const ProfileCurve& curve) { return curve.name == parameter.info.name; });
+    }
   }
 }
 
@@ -164,6 +179,16 @@ void RejectIfTooFewEffectiveSamples(FitState& state) {
   }
 }
 
+/// Sets covariance and noise of recording k. errors: of its own parameters; systematic: likewise.
+void SetOwnErrors(const FittedRun& run, const Optimum& own, const Errors& errors,
+                  const std::vector<SystematicCovariance>& systematic, FitReport& report) {
+  report.statistics.effective_samples = errors.runs[0].effective_samples;
+  report.noise.sigma = run.solution.noise.sigma;
+  report.noise.sigma_std_error = errors.runs[0].sigma;
+  SetCovariance(run.problem, own, errors, report);
+  SetSystematicErrors(run.problem, systematic, report);
+}
+
 /// Sets estimates, errors and intervals of a converged fit, and the quantities they are based on.
 void SetErrors(const Correction& corrected, FitState& state) {
   const SolvedFit& fit = state.fit;
@@ -173,38 +198,34 @@ void SetErrors(const Correction& corrected, FitState& state) {
       separate == nullptr ? CheckEffectsOfOne(corrected, state) : separate->systematic;
   SetAutocorrelations(state);
   Errors errors = ComputeErrors(fit, state.optimum);
-  const bool are_posteriors = separate != nullptr && separate->are_posteriors;
-  if (are_posteriors) errors.covariance = state.optimum.inverse.matrix;
   std::optional<Optimum> sampled;
   if (separate == nullptr) {
     sampled = UsePosterior(fit.runs.front(), state.optimum, errors, state.descriptions.front().report);
+  } else if (separate->are_posteriors) {
+    errors.covariance = state.optimum.inverse.matrix;
+    for (NoiseErrors& run : errors.runs) run.method = "posteriors of the separate recordings, combined as parabolas";
   }
   const auto own_optimum = [&](std::size_t k) -> const Optimum& { return sampled ? *sampled : state.own[k]; };
   std::vector<Errors> own;
+  std::vector<std::vector<SystematicCovariance>> own_systematic;
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
-    const FittedRun& run = fit.runs[k];
-    FitReport& report = state.descriptions[k].report;
     own.push_back(OwnErrors(fit, k, own_optimum(k), sampled.value_or(state.optimum), errors));
-    report.statistics.effective_samples = errors.runs[k].effective_samples;
-    report.noise.sigma = run.solution.noise.sigma;
-    report.noise.sigma_std_error = errors.runs[k].sigma;
-    SetCovariance(run.problem, own_optimum(k), own.back(), report);
-    if (are_posteriors) report.std_error_method = "posteriors of the separate recordings, combined as parabolas";
-    SetSystematicErrors(run.problem, SystematicOf(systematic, run.at), report);
+    own_systematic.push_back(SystematicOf(systematic, fit.runs[k].at));
+    SetOwnErrors(fit.runs[k], own_optimum(k), own[k], own_systematic[k], state.descriptions[k].report);
   }
   if (!sampled) SetIntervals(own, errors, state);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
-    const FittedRun& run = fit.runs[k];
     FitReport& report = state.descriptions[k].report;
-    SetDerived(run, own_optimum(k), own[k], SystematicOf(systematic, run.at), report);
-    SetIdentifiability(run.problem, state.own[k], report);
-    WithdrawUnseenStiction(run.problem, report);
+    SetDerived(fit.runs[k], own_optimum(k), own[k], own_systematic[k], report);
+    // With the errors that are withdrawn below: a parameter without an error would count as identifiable.
+    SetIdentifiability(fit.runs[k].problem, state.own[k], report);
   }
+  WithdrawUnseenStiction(state);
   RejectIfTooFewEffectiveSamples(state);
 }
 
 /// Compares the solution with the readings of each recording.
-FitState Describe(const SolvedFit& fit, const Optimum& optimum, const SeparateFits* separate) {
+FitState MakeState(const SolvedFit& fit, const Optimum& optimum, const SeparateFits* separate) {
   FitState state{fit, separate, optimum, {}, {}};
   for (const FittedRun& run : fit.runs) {
     const Optimum& own = state.own.emplace_back(OwnOptimum(run.at, optimum));
@@ -219,7 +240,7 @@ std::vector<FitReport> MakeFitReports(const SolvedFit& fit, const Optimum* optim
                                       const Correction& corrected) {
   if (optimum == nullptr) return FailedReports(fit);
   const std::vector<const FitReport*> alone = separate == nullptr ? std::vector<const FitReport*>() : separate->alone;
-  FitState state = Describe(fit, *optimum, separate);
+  FitState state = MakeState(fit, *optimum, separate);
   const Ending ending = EndingOf(fit, *optimum, state.descriptions, alone);
   SetEnding(ending, state);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {

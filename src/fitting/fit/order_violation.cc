@@ -98,10 +98,8 @@ Result<FitReport> ReportSimplerLaw(const Recording& recording, const FitOptions&
   report->model = problem.model;
   report->start_values = problem.start;
   if (report->termination == Termination::kFailed) return report;
-  report->termination = Termination::kNotIdentifiable;
-  report->reason = reason;
   report->identifiability.clear();
-  WithdrawErrors("not identifiable: " + reason, *report);
+  Reject(Termination::kNotIdentifiable, reason, "not identifiable: " + reason, *report);
   return report;
 }
 

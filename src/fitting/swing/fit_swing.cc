@@ -109,8 +109,8 @@ void WarnOfVibration(const Recording& used, const Vibration& vibration, FitRepor
 
 /// Marks the fit as not of a pendulum, and removes its errors, which are valid only for a pendulum.
 void RejectAsNotAPendulum(const std::string& why, FitReport& fit) {
-  Reject(Termination::kNotConverged, {"not_a_pendulum", "this is not a free pendulum's swing: " + why},
-         "not a pendulum", fit);
+  RejectFor(Termination::kNotConverged, {"not_a_pendulum", "this is not a free pendulum's swing: " + why},
+            "not a pendulum", fit);
 }
 
 /// If the number of counts lost at a jump is uncertain, ends the window before that jump. At least half of the window

@@ -284,7 +284,7 @@ void WarnOfOffsetJumps(const std::optional<OffsetJumps>& jumps, bool has_misfit,
                             .flags = {"report"}});
   }
   if (!jumps) return;
-  if (!jumps->AreCorrected()) return Reject(Termination::kNotConverged, jumps->warning, "the zero jumps", fit);
+  if (!jumps->AreCorrected()) return RejectFor(Termination::kNotConverged, jumps->warning, "the zero jumps", fit);
   fit.warnings.push_back(jumps->warning);
 }
 

@@ -216,10 +216,8 @@ void CompleteReport(const Recording& used, const std::vector<Alias>& aliases, co
   for (ParameterEstimate& parameter : fit.parameters) parameter.closed_form.reset();
   if (!rejection) return;
   const std::string without_errors = "the fit is " + std::string(TerminationName(rejection->termination));
-  if (rejection->ambiguity) return Reject(rejection->termination, *rejection->ambiguity, without_errors, fit);
-  fit.termination = rejection->termination;
-  fit.reason = rejection->why;
-  WithdrawErrors(without_errors, fit);
+  if (rejection->ambiguity) return RejectFor(rejection->termination, *rejection->ambiguity, without_errors, fit);
+  Reject(rejection->termination, rejection->why, without_errors, fit);
 }
 
 /// Warns about the sampling, with the frequency that the rig predicts or that a converged fit found.

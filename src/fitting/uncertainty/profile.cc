@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pendulum/fitting/uncertainty/standard_errors.h"
 

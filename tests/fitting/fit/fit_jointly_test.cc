@@ -344,6 +344,23 @@ TEST(FitJointly, HasAProfileIntervalAtABound) {
   EXPECT_LE(at_bound, 5);
 }
 
+// Without stiction the readings do not show the rate at which friction would fall to its sliding value.
+TEST(FitJointly, HasNoErrorOfAStictionThatNoRecordingShows) {
+  FitOptions options = RigOptions();
+  options.model = "stribeck";
+  const Recordings recordings = {Must(SimulateRecording(Released(0.5, 1))), Must(SimulateRecording(Released(0.8, 2)))};
+  const JointFit fit =
+      FitAllJointly(recordings, options, {"inertia", "viscous", "coulomb", "stiction", "stribeck_rate"});
+  std::vector<const FitReport*> reports = {&fit.whole};
+  for (const FitReport& run : fit.runs) reports.push_back(&run);
+  for (const FitReport* const report : reports) {
+    if (report->termination != Termination::kConverged) continue;
+    for (const char* const name : {"stiction", "stribeck_rate"}) {
+      EXPECT_FALSE(report->Find(name)->std_error || report->Find(name)->upper95) << name;
+    }
+  }
+}
+
 // ---- Recordings that cannot be fitted ------------------------------------------------------------------------------
 
 TEST(FitJointly, DoesNotConvergeForRigsOfDifferentInertia) {
@@ -372,6 +389,15 @@ TEST(FitJointly, RefusesFewerThanTwoRecordings) {
                 "a joint fit needs two recordings or more; there is one");
   ExpectRefused(TryJointly({}, {}, RigOptions()), StatusCode::kInvalidArgument,
                 "a joint fit needs two recordings or more; there is none");
+}
+
+TEST(FitJointly, RefusesBootstrapIntervals) {
+  FitOptions options = RigOptions();
+  const Recordings recordings = MixedRecordings();
+  const std::vector<FitReport> alone = FitAlone(recordings, options);
+  options.interval = IntervalMethod::kBootstrap;
+  ExpectRefused(TryJointly(recordings, alone, options), StatusCode::kInvalidArgument,
+                "bootstrap intervals are only for the fit to a single recording");
 }
 
 TEST(FitJointly, RefusesSharingAParameterTheModelLacks) {

@@ -64,20 +64,23 @@ TEST(WithdrawErrors, KeepsEstimatesAndGivesAReasonForMissingErrors) {
   EXPECT_EQ(fit.covariance.size(), 0);
 }
 
-TEST(Reject, SaysWhyInReasonAndWarning) {
+TEST(RejectFor, SaysWhyInReasonAndWarning) {
   FitReport fit;
   fit.termination = Termination::kConverged;
   fit.parameters.resize(1);
   fit.parameters[0].std_error = 0.001;
   EXPECT_EQ(fit.ReasonWarning(), nullptr);
   fit.warnings.push_back({"saturated", "2 readings are at an end"});
-  Reject(Termination::kNotConverged, {"offset_jumps", "the zero jumps at 3 s"}, "the zero jumps", fit);
+  RejectFor(Termination::kNotConverged, {"offset_jumps", "the zero jumps at 3 s"}, "the zero jumps", fit);
   EXPECT_EQ(fit.termination, Termination::kNotConverged);
   EXPECT_EQ(fit.reason, "the zero jumps at 3 s");
   ASSERT_NE(fit.ReasonWarning(), nullptr);
   EXPECT_EQ(fit.ReasonWarning()->code, "offset_jumps");
   EXPECT_EQ(fit.parameters[0].std_error, std::nullopt);
   EXPECT_EQ(fit.parameters[0].reason, "the zero jumps");
+  Reject(Termination::kNotIdentifiable, "the law has another order", "not identifiable", fit);
+  EXPECT_EQ(fit.reason, "the law has another order");
+  EXPECT_EQ(fit.ReasonWarning(), nullptr);
 }
 
 // Standard errors 2 and 4, covariance 4: 4 / (2 · 4).

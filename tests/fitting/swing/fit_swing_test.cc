@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "fitting/likelihood/depth_table.h"
-#include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/fitting/swing/choose_swings.h"
 #include "tests/base/warning_matchers.h"
 #include "tests/fitting/fit_support.h"
@@ -130,7 +130,7 @@ TEST(FitSwing, ReportsTheRemovedEnds) {
   EXPECT_THAT(KeptAttempts(result.fit), ElementsAre("disturbed_ends"));
   EXPECT_EQ(MessageText(result.fit.warnings[0]),
             "disturbed ends were left out, because they do not fit the rest: the window is now " +
-                NumberText(result.swing.from, 4) + " s to 19.99 s; choose another one with --from and --to");
+                FixedText(result.swing.from, 2) + " s to 19.99 s; choose another one with --from and --to");
 }
 
 TEST(FitSwing, KeepsTheWholeWindowOfACleanRecording) {

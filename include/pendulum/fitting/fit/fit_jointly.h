@@ -46,14 +46,14 @@ FitStatistics SumStatistics(std::span<const FitReport* const> fits, int paramete
 /// parameters that the model has are shared (MODEL.md eq. (10.1)).
 ///
 /// The fit starts from the combined results of the separate fits. Sensors, sample rates, resolutions and kinds of start
-/// may differ between recordings; the rig must be the same. The fit is converged only if the remaining Newton step is
-/// small and the trajectories leave at most as much of each recording's variance unexplained as is allowed for a
-/// separate fit (MaxUnexplainedShare). Too much unexplained variance suggests recordings of different rigs. If a
-/// separate fit has its errors from a posterior, the joint estimates come from a combination of the separate results,
-/// in which each log-likelihood is approximated by a parabola (UsePosteriors).
+/// may differ between recordings; the rig must be the same. Whether the fit is converged is judged as for one recording
+/// (MakeFitReports). Too much unexplained variance suggests recordings of different rigs. If a separate fit has its
+/// errors from a posterior, the joint estimates come from a combination of the separate results, in which each
+/// log-likelihood is approximated by a parabola (UsePosteriors). The first run's options say which intervals are
+/// computed; without intervals (kNone) there are no errors.
 ///
 /// kInvalidArgument: fewer than two recordings, no shared parameter, a recording with another model or rig than the
-/// first, or invalid options as in FitRecording.
+/// first, bootstrap intervals, or invalid options as in FitRecording.
 /// kFailedPrecondition: a recording that cannot be fitted alone.
 /// kTryAgain: a stop was requested in the options of any run.
 /// Cost: about half of the separate fits.

@@ -143,9 +143,12 @@ struct FitReport {
   const Warning* ReasonWarning() const;
 };
 
-/// Ends a fit for the reason that a warning gives, and adds the warning. `without_errors` is the reason of each
+/// Ends a fit for a reason, and withdraws its errors (WithdrawErrors). `without_errors` is the reason of each
 /// parameter.
-void Reject(Termination termination, Warning why, std::string_view without_errors, FitReport& fit);
+void Reject(Termination termination, std::string reason, std::string_view without_errors, FitReport& fit);
+
+/// The same for the reason that a warning gives, which is added.
+void RejectFor(Termination termination, Warning why, std::string_view without_errors, FitReport& fit);
 
 /// Removes the errors, intervals and covariance from a report in which they are not valid. Each parameter that is not
 /// fixed gets the reason `why`.

@@ -16,11 +16,10 @@
 namespace pendulum {
 
 /// Computes estimates, covariance, σ and intervals of the fit to one recording from draws of the posterior
-/// (SamplePosterior). This is necessary for
-/// quantized noise below kSmallSigma resolutions with few samples near the edges of levels, because the likelihood is
-/// then not parabolic. Returns an optimum whose free parameters match `errors`; parameters at a bound are free in it.
-/// Returns std::nullopt if the noise is larger, the residuals are autocorrelated, or options.interval is not
-/// kAuto.
+/// (SamplePosterior). This is necessary for quantized noise below kSmallSigma resolutions with few samples near the
+/// edges of levels, because the likelihood is then not parabolic. Returns an optimum whose free parameters match
+/// `errors`; parameters at a bound are free in it. Returns std::nullopt if the noise is larger, the residuals are
+/// autocorrelated, or options.interval is not kAuto.
 std::optional<Optimum> UsePosterior(const FittedRun& run, const Optimum& smooth, Errors& errors, FitReport& report);
 
 /// Whether the options ask for profiles, or a parameter is at a bound or within three standard errors of one. Its

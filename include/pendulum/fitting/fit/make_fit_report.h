@@ -20,9 +20,14 @@ struct SeparateFits {
 };
 
 /// Turns the solution of a fit to K >= 1 recordings into K reports: termination, parameters at bounds, identifiability,
-/// and errors. Converged means that the remaining Newton step is below 0.1 standard errors in every direction,
-/// regardless of the solver's own stopping criterion. The trajectories must also leave at most 12 % of the variance of
-/// the readings unexplained, or 80 % if the residuals are not autocorrelated. Each cost has the noise of its solution.
+/// and errors. Converged means that
+///   - the trajectories leave at most 12 % of the variance of each recording unexplained, or 80 % if its residuals are
+///     not autocorrelated;
+///   - the motion lasts at least half a period in some recording, and is plausible in each (ImplausibleReason);
+///   - the remaining Newton step is below 0.1 standard errors in every direction, regardless of the solver's own
+///     stopping criterion, or a jump of the sum of squares has stopped the search;
+///   - autocorrelated residuals are worth more independent readings than there are free parameters.
+/// Each cost has the noise of its solution; of several recordings to 0.3 %, but for posteriors.
 /// optimum: at the solution; nullptr if there is no trajectory. separate: of several recordings; nullptr for one.
 /// corrected: what the readings of one recording were corrected for.
 std::vector<FitReport> MakeFitReports(const SolvedFit& fit, const Optimum* optimum, const SeparateFits* separate,

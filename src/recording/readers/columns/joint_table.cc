@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pendulum/base/format.h"
-#include "recording/readers/columns/name_list.h"
+#include "recording/readers/columns/several_quantities.h"
 
 namespace pendulum::csv {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "pendulum/base/format.h"
 #include "pendulum/base/try.h"
-#include "recording/readers/columns/name_list.h"
+#include "recording/readers/columns/several_quantities.h"
 
 namespace pendulum::csv {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "pendulum/base/format.h"
 
-/// Lists of names for sentences.
 namespace pendulum {
 
 /// The error and advice if two or more columns could be the quantity.
