@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <regex>
 #include <string>
@@ -96,15 +97,24 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
 }
 
-/// The answer for a fit that is not remembered: none exists, or it must be made again by another request.
+/// The answer for a fit that is not remembered: there is none, it has too many samples to be remembered, or it must be
+/// made again by another request.
 HttpResponse NotRemembered(ServiceState& state, const std::string& id) {
   const auto kept = state.store->Find(id);
   if (!kept) return ProblemAnswer(kept.error());
   if (auto without = WithoutResult(*kept)) return *std::move(without);
+  const std::int64_t limit = state.fitter.max_remembered();
+  const auto samples = kept->result.at("recordings").at(0).at("used_samples").get<std::int64_t>();
+  if (samples > limit) {
+    return ProblemResponse({ProblemKind::kTooManySamples,
+                            "this fit used " + std::to_string(samples) +
+                                " samples; readings for other values are given for at most " + std::to_string(limit) +
+                                ", so fit a shorter window (from, to)",
+                            {}});
+  }
   return ProblemResponse({ProblemKind::kConflict,
                           "the service does not hold this fit in memory; ask for /v1/fits/" + id +
-                              "/series, which fits again, and then repeat this request (recordings of more than " +
-                              std::to_string(Fitter::kMaxRemembered) + " samples are never held)",
+                              "/series, which fits again, and then repeat this request",
                           {}});
 }
 

@@ -44,8 +44,8 @@ struct ServiceState {
   ServiceState(ServiceOptions given, std::unique_ptr<FitStore> kept)
       : options(std::move(given)),
         store(std::move(kept)),
-        fitter(options.fit_time),
-        batch_fitter(kBatchTimeFactor * options.fit_time),
+        fitter(options.fit_time, options.max_remembered),
+        batch_fitter(kBatchTimeFactor * options.fit_time, 0),
         queue(*store, batch_fitter, metrics, options.say) {
     if (!options.live.empty()) live.emplace(options.live);
   }

@@ -152,6 +152,30 @@ TEST_F(FittingServiceReadingsTest, NeedAFitInMemory) {
   EXPECT_EQ(ReadingsAt(location, body), before);
 }
 
+TEST_F(FittingServiceReadingsTest, AreNotGivenForMoreSamplesThanAreHeld) {
+  const Json body = {{"parameters", Json::object()}};
+  const std::string held = Fitted();
+  const int samples = JsonAt(held)["recordings"][0]["used_samples"];
+  options_.max_remembered = samples;
+  End();
+  EXPECT_EQ(Get(held + "/series").status, 200);
+  SyntheticOptions longer = small_batch::Truth(1);
+  longer.duration *= 2;
+  const HttpResponse fit = Post("/v1/fits?model=viscous", "text/csv", small_batch::RecordingText(longer));
+  const std::string location = FieldOf(fit, "Location");
+  const int used = Json::parse(fit.body)["recordings"][0]["used_samples"];
+  ASSERT_GT(used, samples);
+  for (int i = 0; i < 2; ++i) {
+    const HttpResponse refused = Readings(location, body);
+    EXPECT_EQ(AnswerOf(refused), "422 this fit used " + std::to_string(used) +
+                                     " samples; readings for other values are given for at most " +
+                                     std::to_string(samples) + ", so fit a shorter window (from, to)");
+    EXPECT_EQ(Json::parse(refused.body)["code"], "too_many_samples");
+    EXPECT_EQ(Get(location + "/series").status, 200);
+  }
+  ReadingsAt(held, body);  // the longer fit did not make the service forget it
+}
+
 // ---- While fits run ------------------------------------------------------------------------------------------------
 
 /// A service whose requests of Lane::kFit wait until they are let go.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,7 +20,9 @@ namespace pendulum {
 struct ServiceOptions {
   RequestLimits limits;
   AccessRules access;
-  std::chrono::milliseconds fit_time{30'000};   ///< Longest time of one fit.
+  std::chrono::milliseconds fit_time{30'000};  ///< Longest time of one fit.
+  /// Samples of all fits in memory. A fit needs about a kilobyte per sample if several models are compared.
+  std::int64_t max_remembered = 100'000;
   int threads = 0;                              ///< Runs of batches at a time; 0: one per core.
   std::string live;                             ///< Path of the recording in progress (LiveRecording), or empty.
   std::string docs;                             ///< Folder of the user guide, served at /docs; empty: none.
