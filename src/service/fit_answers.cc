@@ -61,8 +61,12 @@ std::optional<HttpResponse> WithoutResult(const KeptFit& kept) {
   return std::nullopt;
 }
 
+HttpResponse StoppingAnswer() {
+  return ProblemResponse(RetryLater(ProblemKind::kStopping, "the service is being stopped"));
+}
+
 HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
-  if (state.is_stopping) return ProblemResponse(RetryLater(ProblemKind::kStopping, "the service is being stopped"));
+  if (state.is_stopping) return StoppingAnswer();
   return ProblemResponse(RetryLater(ProblemKind::kTimedOut, status.message));
 }
 
@@ -116,6 +120,16 @@ HttpResponse NotRemembered(ServiceState& state, const std::string& id) {
                           "the service does not hold this fit in memory; ask for /v1/fits/" + id +
                               "/series, which fits again, and then repeat this request",
                           {}});
+}
+
+/// The answer for readings that were stopped. The same values would take as long again, so the client must not repeat
+/// the request.
+HttpResponse StoppedReadings(const ServiceState& state) {
+  if (state.is_stopping) return StoppingAnswer();
+  const std::chrono::duration<double> limit = state.readings_limit.limit();
+  return ProblemAnswer({StatusCode::kInvalidArgument, "with these values the motion was not computed after " +
+                                                          NumberText(limit.count()) +
+                                                          " s, the time limit; choose values nearer to the estimates"});
 }
 
 /// The identification with the name of its recording as path.
@@ -279,7 +293,9 @@ HttpResponse PostReadings(ServiceState& state, const Call& call) {
   const auto run = state.fitter.Find(call.id);
   if (!run) return NotRemembered(state, call.id);
   if (const auto exists = state.store->CheckFit(call.id); !exists) return ProblemAnswer(exists.error());
-  const auto readings = ReadingsJson(*run, *request);
+  const TimeLimit::Watch watch(state.readings_limit);
+  const auto readings = ReadingsJson(*run, *request, watch.token());
+  if (!readings && readings.error().code == StatusCode::kTryAgain) return StoppedReadings(state);
   if (!readings) return ProblemAnswer(readings.error());
   return TextAnswer("application/json", JsonText(*readings) + "\n");
 }

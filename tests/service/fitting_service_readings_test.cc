@@ -31,6 +31,8 @@ using testing::StartsWith;
 
 class FittingServiceReadingsTest : public asked_service::ServiceTest {
  protected:
+  FittingServiceReadingsTest() { options_.readings_time = std::chrono::minutes(10); }
+
   HttpResponse Readings(const std::string& location, const Json& body) {
     return Post(location + "/readings", "application/json", body.dump());
   }
@@ -174,6 +176,28 @@ TEST_F(FittingServiceReadingsTest, AreNotGivenForMoreSamplesThanAreHeld) {
     EXPECT_EQ(Get(location + "/series").status, 200);
   }
   ReadingsAt(held, body);  // the longer fit did not make the service forget it
+}
+
+// 1e5 rad/s are 16 000 turns per second of the recording.
+TEST_F(FittingServiceReadingsTest, AreNotGivenForValuesThatTakeTooLong) {
+  options_.readings_time = std::chrono::milliseconds(1);
+  SyntheticOptions options = small_batch::Truth(1);
+  options.release_time = 0;
+  options.release_angle = 0.3;
+  options.initial_rate = 1;
+  options.duration = 60;
+  const HttpResponse fit = Post("/v1/fits?model=viscous", "text/csv", small_batch::RecordingText(options));
+  ASSERT_TRUE(Json::parse(fit.body)["recordings"][0]["fits"][0]["parameters"].contains("initial_rate")) << fit.body;
+  const std::string location = FieldOf(fit, "Location");
+  const Json body = {{"parameters", {{"initial_rate", 1e5}}}};
+  const HttpResponse slow = Readings(location, body);
+  EXPECT_EQ(AnswerOf(slow),
+            "400 with these values the motion was not computed after 0.001 s, the time limit; choose values nearer to "
+            "the estimates");
+  EXPECT_EQ(FieldOf(slow, "Retry-After"), "");
+  Service().Stop();
+  Service().StopFits();
+  EXPECT_EQ(AnswerOf(Readings(location, body)), "503 the service is being stopped");
 }
 
 // ---- While fits run ------------------------------------------------------------------------------------------------
