@@ -178,26 +178,41 @@ TEST_F(FittingServiceReadingsTest, AreNotGivenForMoreSamplesThanAreHeld) {
   ReadingsAt(held, body);  // the longer fit did not make the service forget it
 }
 
-// 1e5 rad/s are 16 000 turns per second of the recording.
-TEST_F(FittingServiceReadingsTest, AreNotGivenForValuesThatTakeTooLong) {
-  options_.readings_time = std::chrono::milliseconds(1);
+/// A recording of a pendulum that moves from its first sample.
+std::string MovingRecording() {
   SyntheticOptions options = small_batch::Truth(1);
   options.release_time = 0;
   options.release_angle = 0.3;
   options.initial_rate = 1;
-  options.duration = 60;
-  const HttpResponse fit = Post("/v1/fits?model=viscous", "text/csv", small_batch::RecordingText(options));
-  ASSERT_TRUE(Json::parse(fit.body)["recordings"][0]["fits"][0]["parameters"].contains("initial_rate")) << fit.body;
-  const std::string location = FieldOf(fit, "Location");
-  const Json body = {{"parameters", {{"initial_rate", 1e5}}}};
-  const HttpResponse slow = Readings(location, body);
+  return small_batch::RecordingText(options);
+}
+
+// 1e5 rad/s are 16 000 turns per second; with 1e300 rad/s numbers overflow. The steps of a motion are limited.
+TEST_F(FittingServiceReadingsTest, AreNotGivenForExtremeValues) {
+  const std::string location = FieldOf(Post("/v1/fits?model=viscous", "text/csv", MovingRecording()), "Location");
+  for (const double rate : {1e5, 1e300}) {
+    EXPECT_THAT(Refused(location, {{"parameters", {{"initial_rate", rate}}}}),
+                StartsWith("400 with these values there is no motion that can be computed: "));
+  }
+}
+
+TEST_F(FittingServiceReadingsTest, AreNotGivenForValuesThatTakeTooLong) {
+  options_.readings_time = std::chrono::milliseconds(0);
+  const std::string location = FieldOf(Post("/v1/fits?model=viscous", "text/csv", MovingRecording()), "Location");
+  const HttpResponse slow = Readings(location, {{"parameters", {{"initial_rate", 1e5}}}});
   EXPECT_EQ(AnswerOf(slow),
-            "400 with these values the motion was not computed after 0.001 s, the time limit; choose values nearer to "
-            "the estimates");
+            "400 with these values the motion was not computed after 0 s, the time limit; choose values nearer to the "
+            "estimates");
   EXPECT_EQ(FieldOf(slow, "Retry-After"), "");
+}
+
+TEST_F(FittingServiceReadingsTest, EndWhenTheServiceStops) {
+  const std::string location = Fitted();
   Service().Stop();
   Service().StopFits();
-  EXPECT_EQ(AnswerOf(Readings(location, body)), "503 the service is being stopped");
+  const HttpResponse stopped = Readings(location, {{"parameters", Json::object()}});
+  EXPECT_EQ(AnswerOf(stopped), "503 the service is being stopped");
+  EXPECT_NE(FieldOf(stopped, "Retry-After"), "");
 }
 
 // ---- While fits run ------------------------------------------------------------------------------------------------
