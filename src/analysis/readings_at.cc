@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -48,7 +49,7 @@ Result<void> CheckValue(const ParameterEstimate& parameter, double value, const 
 }  // namespace
 
 Result<Eigen::VectorXd> ReadingsAt(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig,
-                                   const ParameterValues& values) {
+                                   const ParameterValues& values, const std::stop_token& stop) {
   if (fit.termination == Termination::kFailed) {
     return Error(StatusCode::kFailedPrecondition,
                  "the fit of model " + std::string(fit.model.name) + " has no estimates: " + fit.reason);
@@ -60,8 +61,11 @@ Result<Eigen::VectorXd> ReadingsAt(const Recording& used, const FitReport& fit, 
     RETURN_IF_ERROR(CheckValue(fit.parameters[i], value, used));
     all[i] = value;
   }
-  const FittedMotion motion = FittedMotion(used, fit, rig).WithValues(all);
+  const FittedMotion motion = FittedMotion(used, fit, rig, stop).WithValues(all);
   std::optional<Eigen::VectorXd> readings = motion.Readings(motion.instants());
+  if (!readings && stop.stop_requested()) {
+    return Error(StatusCode::kTryAgain, "the readings were stopped before the motion was computed");
+  }
   if (!readings || !readings->allFinite()) {
     return Error(StatusCode::kInvalidArgument,
                  "with these values there is no motion that can be computed: friction holds the pendulum at its "

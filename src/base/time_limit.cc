@@ -17,7 +17,7 @@ TimeLimit::Watch::~Watch() {
 std::uint64_t TimeLimit::Begin(Watch& watch) {
   const std::scoped_lock lock(mutex_);
   running_.emplace(next_, Running{Clock::now() + limit_, &watch});
-  if (all_stopped_) watch.source_.request_stop();
+  if (all_stopped_ || limit_ <= std::chrono::milliseconds::zero()) watch.source_.request_stop();
   changed_.notify_one();
   return next_++;
 }

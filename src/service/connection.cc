@@ -30,6 +30,15 @@ auto Guarded(const Call& call, const Failed& failed) -> decltype(call()) {
 
 }  // namespace
 
+WorkQueue& Serving::QueueOf(Lane lane) const {
+  switch (lane) {
+    case Lane::kQuick: break;
+    case Lane::kFit: return fits;
+    case Lane::kReadings: return readings;
+  }
+  return quick;
+}
+
 Connection::Connection(asio::ip::tcp::socket socket, Serving& serving)
     : channel_(std::make_shared<Channel>(std::move(socket), serving.options.request_time)),
       serving_(serving),
@@ -181,11 +190,11 @@ void Connection::Dispatch() {
   is_http11_ = parser_->head().is_http11;
   const Lane lane = Guarded([&] { return serving_.handler.LaneOf(parser_->request()); },
                             [](const std::string&) { return Lane::kQuick; });
-  WorkQueue& queue = lane == Lane::kFit ? serving_.fits : lane == Lane::kReadings ? serving_.readings : serving_.quick;
-  const bool is_queued = queue.Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
-    auto response = std::make_shared<HttpResponse>(self->Handle(offered));
-    asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });
-  });
+  const bool is_queued =
+      serving_.QueueOf(lane).Offer([self = shared_from_this(), offered = std::chrono::steady_clock::now()] {
+        auto response = std::make_shared<HttpResponse>(self->Handle(offered));
+        asio::post(self->serving_.io, [self, response] { self->Answer(std::move(*response), true); });
+      });
   if (!is_queued) return Refuse({429, "too many requests are waiting; try again later"});
   if (lane == Lane::kFit) WatchClient();
 }

@@ -32,11 +32,13 @@ struct Serving {
   std::function<void(const Answered&)> answered;
   asio::io_context& io;
   ByteBudget& budget;
-  WorkQueue &quick, &fits, &readings;
+  WorkQueue &quick, &fits, &readings;                              ///< One for each Lane.
   std::function<void(const std::shared_ptr<Connection>&)> closed;  ///< Called when a connection is over.
   std::atomic<bool> is_stopping = false;
   std::atomic<std::size_t> streams = 0;
   std::atomic<std::uint64_t> answers = 0, refusals = 0;
+
+  WorkQueue& QueueOf(Lane lane) const;
 };
 
 /// One client. Requests are read, passed to a lane and answered one after another. Runs on the I/O thread, except for

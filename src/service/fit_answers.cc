@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <regex>
 #include <string>
@@ -60,8 +61,12 @@ std::optional<HttpResponse> WithoutResult(const KeptFit& kept) {
   return std::nullopt;
 }
 
+HttpResponse StoppingAnswer() {
+  return ProblemResponse(RetryLater(ProblemKind::kStopping, "the service is being stopped"));
+}
+
 HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
-  if (state.is_stopping) return ProblemResponse(RetryLater(ProblemKind::kStopping, "the service is being stopped"));
+  if (state.is_stopping) return StoppingAnswer();
   return ProblemResponse(RetryLater(ProblemKind::kTimedOut, status.message));
 }
 
@@ -96,16 +101,35 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
   return run.error().code == StatusCode::kTryAgain ? StoppedAnswer(state, run.error()) : ProblemAnswer(run.error());
 }
 
-/// The answer for a fit that is not remembered: none exists, or it must be made again by another request.
+/// The answer for a fit that is not remembered: there is none, it has too many samples to be remembered, or it must be
+/// made again by another request.
 HttpResponse NotRemembered(ServiceState& state, const std::string& id) {
   const auto kept = state.store->Find(id);
   if (!kept) return ProblemAnswer(kept.error());
   if (auto without = WithoutResult(*kept)) return *std::move(without);
+  const std::int64_t limit = state.fitter.max_remembered();
+  const auto samples = kept->result.at("recordings").at(0).at("used_samples").get<std::int64_t>();
+  if (samples > limit) {
+    return ProblemResponse({ProblemKind::kTooManySamples,
+                            "this fit used " + std::to_string(samples) +
+                                " samples; readings for other values are given for at most " + std::to_string(limit) +
+                                ", so fit a shorter window (from, to)",
+                            {}});
+  }
   return ProblemResponse({ProblemKind::kConflict,
                           "the service does not hold this fit in memory; ask for /v1/fits/" + id +
-                              "/series, which fits again, and then repeat this request (recordings of more than " +
-                              std::to_string(Fitter::kMaxRemembered) + " samples are never held)",
+                              "/series, which fits again, and then repeat this request",
                           {}});
+}
+
+/// The answer for readings that were stopped. The same values would take as long again, so the client must not repeat
+/// the request.
+HttpResponse StoppedReadings(const ServiceState& state) {
+  if (state.is_stopping) return StoppingAnswer();
+  const std::chrono::duration<double> limit = state.readings_limit.limit();
+  return ProblemAnswer({StatusCode::kInvalidArgument, "with these values the motion was not computed after " +
+                                                          NumberText(limit.count()) +
+                                                          " s, the time limit; choose values nearer to the estimates"});
 }
 
 /// The identification with the name of its recording as path.
@@ -269,7 +293,9 @@ HttpResponse PostReadings(ServiceState& state, const Call& call) {
   const auto run = state.fitter.Find(call.id);
   if (!run) return NotRemembered(state, call.id);
   if (const auto exists = state.store->CheckFit(call.id); !exists) return ProblemAnswer(exists.error());
-  const auto readings = ReadingsJson(*run, *request);
+  const TimeLimit::Watch watch(state.readings_limit);
+  const auto readings = ReadingsJson(*run, *request, watch.token());
+  if (!readings && readings.error().code == StatusCode::kTryAgain) return StoppedReadings(state);
   if (!readings) return ProblemAnswer(readings.error());
   return TextAnswer("application/json", JsonText(*readings) + "\n");
 }

@@ -2,6 +2,7 @@
 #include "service/fitter.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <utility>
 
@@ -83,13 +84,14 @@ Result<std::shared_ptr<const Identification>> Fitter::FitOf(const std::string& i
 }
 
 void Fitter::Remember(const std::string& id, std::shared_ptr<const Identification> run) {
-  const Eigen::Index samples = run->recordings.front().used.size();
+  const std::int64_t samples = run->recordings.front().used.size();
+  if (samples > max_remembered_) return;
   const std::scoped_lock lock(mutex_);
   std::erase_if(remembered_, [&](const Remembered& other) { return other.id == id; });
   remembered_.push_front({id, std::move(run), samples});
-  Eigen::Index total = 0;
-  const auto too_many =
-      std::ranges::find_if(remembered_, [&](const Remembered& one) { return (total += one.samples) > kMaxRemembered; });
+  std::int64_t total = 0;
+  const auto too_many = std::ranges::find_if(
+      remembered_, [&](const Remembered& one) { return (total += one.samples) > max_remembered_; });
   remembered_.erase(too_many, remembered_.end());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -28,7 +29,9 @@ struct FinishedRun {
 /// Fits within a time limit and keeps the most recent fits with their samples. For any thread.
 class Fitter {
  public:
-  explicit Fitter(std::chrono::milliseconds limit) : limit_(limit) {}
+  /// max_remembered: samples of all remembered fits.
+  Fitter(std::chrono::milliseconds limit, std::int64_t max_remembered)
+      : limit_(limit), max_remembered_(max_remembered) {}
 
   /// Fits one run. The result is the same as from fit_pendulum, but has no path. `unwanted`: nobody waits for it.
   FinishedRun Fit(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted = {});
@@ -40,7 +43,8 @@ class Fitter {
   /// The remembered fit of a run; nullptr if there is none.
   std::shared_ptr<const Identification> Find(const std::string& id);
 
-  /// Remembers the fit of a run, unless it has more than kMaxRemembered samples.
+  /// Remembers the fit of a run, unless it has more than max_remembered samples. Forgets the fits that were not used
+  /// for longest, if together they have more.
   void Remember(const std::string& id, std::shared_ptr<const Identification> run);
 
   /// Stops current and future fits.
@@ -48,19 +52,19 @@ class Fitter {
 
   std::chrono::milliseconds limit() const { return limit_.limit(); }
 
-  /// Samples of all remembered fits. A fit needs about a kilobyte per sample if several models are compared.
-  static constexpr Eigen::Index kMaxRemembered = 100'000;
+  std::int64_t max_remembered() const { return max_remembered_; }
 
  private:
   struct Remembered {
     std::string id;
     std::shared_ptr<const Identification> run;
-    Eigen::Index samples;
+    std::int64_t samples;
   };
 
   void FitInto(const IdentifyOptions& asked, RunFiles files, const std::stop_token& unwanted, FinishedRun& fitted);
 
   TimeLimit limit_;
+  std::int64_t max_remembered_;
   std::mutex mutex_;                  // for the members below
   std::list<Remembered> remembered_;  // most recently used first
 };

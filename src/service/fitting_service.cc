@@ -127,6 +127,7 @@ void FittingService::Stop() {
 void FittingService::StopFits() {
   state_->fitter.StopAll();
   state_->batch_fitter.StopAll();
+  state_->readings_limit.StopAll();
 }
 
 }  // namespace pendulum

@@ -36,6 +36,7 @@ constexpr std::array kKindsOfProblem = {
     KindOfProblem{ProblemKind::kUnusableData, 422, "unusable_data", "The data cannot be read", 4},
     KindOfProblem{ProblemKind::kNoSwing, 422, "no_swing", "The data contain no swing that can be fitted", 5},
     KindOfProblem{ProblemKind::kKeyReused, 422, "idempotency_key_reused", "The key belongs to another request", {}},
+    KindOfProblem{ProblemKind::kTooManySamples, 422, "too_many_samples", "The fit has too many samples for this", {}},
     KindOfProblem{ProblemKind::kTooManyRequests, 429, "too_many_requests", "Too many requests at the same time", 75},
     KindOfProblem{ProblemKind::kHeadersTooLarge, 431, "headers_too_large", "The head of the request is too large", {}},
     KindOfProblem{ProblemKind::kInternal, 500, "internal", "The service has failed", 70},

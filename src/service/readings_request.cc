@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/analysis/readings_at.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/json.h"
 #include "pendulum/base/try.h"
@@ -72,7 +73,7 @@ ResultOrProblem<ReadingsRequest> ParseReadingsRequest(const HttpRequest& http) {
   return *std::move(request);
 }
 
-Result<Json> ReadingsJson(const Identification& run, const ReadingsRequest& request) {
+Result<Json> ReadingsJson(const Identification& run, const ReadingsRequest& request, const std::stop_token& stop) {
   constexpr Eigen::Index kMaxSamples = 4000;
   if (run.fits.empty()) {
     return Error(StatusCode::kNotFound, "this run has only closed forms and no fit, so it has no parameters");
@@ -84,7 +85,7 @@ Result<Json> ReadingsJson(const Identification& run, const ReadingsRequest& requ
   ASSIGN_OR_RETURN(const std::size_t fit, FindFit(run, request.model));
   const Recording& used = run.recordings[request.recording].used;
   ASSIGN_OR_RETURN(const Eigen::VectorXd readings,
-                   ReadingsAt(used, run.FitOf(request.recording, fit), run.si_rig(), request.values));
+                   ReadingsAt(used, run.FitOf(request.recording, fit), run.si_rig(), request.values, stop));
   const Eigen::Index stride = (used.size() + kMaxSamples - 1) / kMaxSamples;
   Json time = Json::array(), value = Json::array();
   double squares = 0;

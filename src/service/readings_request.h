@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <stop_token>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "pendulum/analysis/readings_at.h"
 #include "pendulum/identify/identification.h"
+#include "pendulum/model/parameter.h"
 #include "pendulum/service/fit_request.h"
 
 namespace pendulum {
@@ -25,7 +26,8 @@ ResultOrProblem<ReadingsRequest> ParseReadingsRequest(const HttpRequest& http);
 
 /// The readings of ReadingsAt as {"time_s", "value", "unit", "rms_residual"}: every k-th sample, at most 4000, times on
 /// the file's clock, and the root mean square of measured - value of these samples. kInvalidArgument: no fit has this
-/// model, there is no such recording, and errors of ReadingsAt. kNotFound: the run has no fit.
-Result<nlohmann::ordered_json> ReadingsJson(const Identification& run, const ReadingsRequest& request);
+/// model, there is no such recording, and errors of ReadingsAt. kNotFound: the run has no fit. kTryAgain: stopped.
+Result<nlohmann::ordered_json> ReadingsJson(const Identification& run, const ReadingsRequest& request,
+                                            const std::stop_token& stop);
 
 }  // namespace pendulum

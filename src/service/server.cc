@@ -50,9 +50,15 @@ struct Server::State {
         quick(ThreadsOf(options.quick_threads), options.max_queue),
         fits(ThreadsOf(options.fit_threads), options.max_queue),
         readings(ThreadsOf(options.readings_threads), options.max_queue),
-        serving{options, handler,  std::move(answered),
-                io,      budget,   quick,
-                fits,    readings, [this](const auto& c) { Forget(c); }} {}
+        serving{.options = options,
+                .handler = handler,
+                .answered = std::move(answered),
+                .io = io,
+                .budget = budget,
+                .quick = quick,
+                .fits = fits,
+                .readings = readings,
+                .closed = [this](const auto& c) { Forget(c); }} {}
 
   Result<void> Bind();
   void Accept();

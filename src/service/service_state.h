@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pendulum/base/time_limit.h"
 #include "pendulum/batch/fit_store.h"
 #include "pendulum/service/fitting_service.h"
 #include "pendulum/service/http.h"
@@ -44,8 +45,9 @@ struct ServiceState {
   ServiceState(ServiceOptions given, std::unique_ptr<FitStore> kept)
       : options(std::move(given)),
         store(std::move(kept)),
-        fitter(options.fit_time),
-        batch_fitter(kBatchTimeFactor * options.fit_time),
+        fitter(options.fit_time, options.max_remembered),
+        batch_fitter(kBatchTimeFactor * options.fit_time, 0),
+        readings_limit(options.readings_time),
         queue(*store, batch_fitter, metrics, options.say) {
     if (!options.live.empty()) live.emplace(options.live);
   }
@@ -57,6 +59,7 @@ struct ServiceState {
   std::unique_ptr<FitStore> store;
   ServiceMetrics metrics;
   Fitter fitter, batch_fitter;
+  TimeLimit readings_limit;
   KeysInProgress keys;
   std::optional<LiveRecording> live;
   std::atomic<bool> is_stopping = false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -203,6 +204,17 @@ TEST(ReadingsAt, RefuseValuesWithoutAMotion) {
   EXPECT_EQ(message("drag", 0.1),
             "this fit of model coulomb has no parameter 'drag'; it has inertia, viscous, coulomb, release_angle, "
             "release_time, zero_angle");
+}
+
+// 1e5 rad/s over 10 s is some 160 000 turns.
+TEST(ReadingsAt, EndAtAStop) {
+  const FitOfRun run = FitTo(MovingRun("coulomb"), "coulomb", {});
+  std::stop_source stop;
+  stop.request_stop();
+  const auto readings = ReadingsAt(run.recording, run.fit, run.rig, {{"initial_rate", 1e5}}, stop.get_token());
+  ASSERT_FALSE(readings);
+  EXPECT_EQ(readings.error().code, StatusCode::kTryAgain);
+  EXPECT_EQ(readings.error().message, "the readings were stopped before the motion was computed");
 }
 
 TEST(ReadingsAt, NeedEstimates) {

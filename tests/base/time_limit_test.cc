@@ -39,6 +39,11 @@ TEST(TimeLimit, StopsOnlyWorkThatTakesTooLong) {
   EXPECT_GE(Clock::now() - begin, kShort);
 }
 
+TEST(TimeLimit, StopsWorkBeforeItBeginsIfThereIsNoTime) {
+  TimeLimit limit(milliseconds(0));
+  EXPECT_TRUE(TimeLimit::Watch(limit).token().stop_requested());
+}
+
 TEST(TimeLimit, StopsEachPieceOfWorkAfterItsOwnTime) {
   TimeLimit limit(kShort);
   const TimeLimit::Watch first(limit);

@@ -31,6 +31,8 @@ using testing::StartsWith;
 
 class FittingServiceReadingsTest : public asked_service::ServiceTest {
  protected:
+  FittingServiceReadingsTest() { options_.readings_time = std::chrono::minutes(10); }
+
   HttpResponse Readings(const std::string& location, const Json& body) {
     return Post(location + "/readings", "application/json", body.dump());
   }
@@ -150,6 +152,67 @@ TEST_F(FittingServiceReadingsTest, NeedAFitInMemory) {
   EXPECT_EQ(FieldOf(lost, "Retry-After"), "");
   EXPECT_EQ(Get(location + "/series").status, 200);
   EXPECT_EQ(ReadingsAt(location, body), before);
+}
+
+TEST_F(FittingServiceReadingsTest, AreNotGivenForMoreSamplesThanAreHeld) {
+  const Json body = {{"parameters", Json::object()}};
+  const std::string held = Fitted();
+  const int samples = JsonAt(held)["recordings"][0]["used_samples"];
+  options_.max_remembered = samples;
+  End();
+  EXPECT_EQ(Get(held + "/series").status, 200);
+  SyntheticOptions longer = small_batch::Truth(1);
+  longer.duration *= 2;
+  const HttpResponse fit = Post("/v1/fits?model=viscous", "text/csv", small_batch::RecordingText(longer));
+  const std::string location = FieldOf(fit, "Location");
+  const int used = Json::parse(fit.body)["recordings"][0]["used_samples"];
+  ASSERT_GT(used, samples);
+  for (int i = 0; i < 2; ++i) {
+    const HttpResponse refused = Readings(location, body);
+    EXPECT_EQ(AnswerOf(refused), "422 this fit used " + std::to_string(used) +
+                                     " samples; readings for other values are given for at most " +
+                                     std::to_string(samples) + ", so fit a shorter window (from, to)");
+    EXPECT_EQ(Json::parse(refused.body)["code"], "too_many_samples");
+    EXPECT_EQ(Get(location + "/series").status, 200);
+  }
+  ReadingsAt(held, body);  // the longer fit did not make the service forget it
+}
+
+/// A recording of a pendulum that moves from its first sample.
+std::string MovingRecording() {
+  SyntheticOptions options = small_batch::Truth(1);
+  options.release_time = 0;
+  options.release_angle = 0.3;
+  options.initial_rate = 1;
+  return small_batch::RecordingText(options);
+}
+
+// 1e5 rad/s are 16 000 turns per second; with 1e300 rad/s numbers overflow. The steps of a motion are limited.
+TEST_F(FittingServiceReadingsTest, AreNotGivenForExtremeValues) {
+  const std::string location = FieldOf(Post("/v1/fits?model=viscous", "text/csv", MovingRecording()), "Location");
+  for (const double rate : {1e5, 1e300}) {
+    EXPECT_THAT(Refused(location, {{"parameters", {{"initial_rate", rate}}}}),
+                StartsWith("400 with these values there is no motion that can be computed: "));
+  }
+}
+
+TEST_F(FittingServiceReadingsTest, AreNotGivenForValuesThatTakeTooLong) {
+  options_.readings_time = std::chrono::milliseconds(0);
+  const std::string location = FieldOf(Post("/v1/fits?model=viscous", "text/csv", MovingRecording()), "Location");
+  const HttpResponse slow = Readings(location, {{"parameters", {{"initial_rate", 1e5}}}});
+  EXPECT_EQ(AnswerOf(slow),
+            "400 with these values the motion was not computed after 0 s, the time limit; choose values nearer to the "
+            "estimates");
+  EXPECT_EQ(FieldOf(slow, "Retry-After"), "");
+}
+
+TEST_F(FittingServiceReadingsTest, EndWhenTheServiceStops) {
+  const std::string location = Fitted();
+  Service().Stop();
+  Service().StopFits();
+  const HttpResponse stopped = Readings(location, {{"parameters", Json::object()}});
+  EXPECT_EQ(AnswerOf(stopped), "503 the service is being stopped");
+  EXPECT_NE(FieldOf(stopped, "Retry-After"), "");
 }
 
 // ---- While fits run ------------------------------------------------------------------------------------------------

@@ -98,7 +98,7 @@ TEST(ProblemOf, TreatsAnUnknownStatusByItsClass) {
 
 TEST(Problem, HasAUniqueCodeAndTitleForEachKind) {
   std::set<std::string> codes, titles;
-  constexpr int kKinds = 18;
+  constexpr int kKinds = 19;
   for (int i = 0; i < kKinds; ++i) {
     const Json json = JsonOf({static_cast<ProblemKind>(i), "why", {}});
     codes.insert(json["code"].get<std::string>());
@@ -108,6 +108,7 @@ TEST(Problem, HasAUniqueCodeAndTitleForEachKind) {
   EXPECT_EQ(titles.size(), kKinds);
   EXPECT_EQ(static_cast<int>(ProblemKind::kCannotWrite), kKinds - 1);  // the last one
   EXPECT_EQ(Figures({ProblemKind::kKeyReused, "why", {}}), "422 idempotency_key_reused -");
+  EXPECT_EQ(Figures({ProblemKind::kTooManySamples, "why", {}}), "422 too_many_samples -");
 }
 
 // RFC 9110, sections 15.5.9 and 15.6.4, and RFC 6585, section 4.

@@ -15,6 +15,7 @@ namespace pendulum {
 /// Requests a stop of work that exceeds a time limit. For any thread.
 class TimeLimit {
  public:
+  /// With a limit of 0, a stop is requested before the work begins.
   explicit TimeLimit(std::chrono::milliseconds limit);
   TimeLimit(const TimeLimit&) = delete;
   TimeLimit& operator=(const TimeLimit&) = delete;

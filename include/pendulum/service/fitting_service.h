@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,7 +20,11 @@ namespace pendulum {
 struct ServiceOptions {
   RequestLimits limits;
   AccessRules access;
-  std::chrono::milliseconds fit_time{30'000};   ///< Longest time of one fit.
+  std::chrono::milliseconds fit_time{30'000};  ///< Longest time of one fit.
+  /// Longest time of readings for other values, whose requests are answered one after the other.
+  std::chrono::milliseconds readings_time{1'000};
+  /// Samples of all fits in memory. A fit needs about a kilobyte per sample if several models are compared.
+  std::int64_t max_remembered = 100'000;
   int threads = 0;                              ///< Runs of batches at a time; 0: one per core.
   std::string live;                             ///< Path of the recording in progress (LiveRecording), or empty.
   std::string docs;                             ///< Folder of the user guide, served at /docs; empty: none.
@@ -56,7 +61,7 @@ class FittingService : public HttpHandler {
   /// Starts no more runs of batches, and reports the stop in health checks. Remaining runs wait for the next start.
   void Stop();
 
-  /// Stops all fits; their requests are answered with 503.
+  /// Stops all fits and readings for other values; their requests are answered with 503.
   void StopFits();
 
  private:

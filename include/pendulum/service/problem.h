@@ -29,6 +29,7 @@ enum class ProblemKind {
   kUnusableData,          ///< 422
   kNoSwing,               ///< 422
   kKeyReused,             ///< 422
+  kTooManySamples,        ///< 422
   kTooManyRequests,       ///< 429
   kHeadersTooLarge,       ///< 431
   kInternal,              ///< 500

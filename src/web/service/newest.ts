@@ -2,23 +2,37 @@
 /** Work for values that change faster than it is done. */
 
 /**
- * A function that does the work for its newest value: one at a time, and never for a value that a newer one replaced
- * while it waited. `work` must not throw.
+ * Does the work for the newest value: one at a time, and never for a value that a newer one replaced while it waited.
+ * `work` gets a signal that is aborted when its value is dropped. After work that throws, the next value has its turn.
  */
-export function forNewest<T>(work: (value: T) => Promise<void>): (value: T) => Promise<void> {
-  let waiting: { value: T } | null = null;
-  let running: Promise<void> | null = null;
-  const run = async (): Promise<void> => {
-    while (waiting) {
-      const { value } = waiting;
-      waiting = null;
-      await work(value);
+export class Newest<T> {
+  private waiting: { value: T } | null = null;
+  private running: AbortController | null = null;
+
+  constructor(private readonly work: (value: T, dropped: AbortSignal) => Promise<void>) {}
+
+  /** Resolves at once while other work runs, otherwise when the work for this value is done. Rejects if it throws. */
+  ask(value: T): Promise<void> {
+    this.waiting = { value };
+    return this.next();
+  }
+
+  /** Nobody wants the values any more for which work runs or waits. */
+  drop(): void {
+    this.waiting = null;
+    this.running?.abort();
+  }
+
+  private async next(): Promise<void> {
+    if (this.running || !this.waiting) return;
+    const { value } = this.waiting;
+    this.waiting = null;
+    this.running = new AbortController();
+    try {
+      await this.work(value, this.running.signal);
+    } finally {
+      this.running = null;
+      void this.next();
     }
-    running = null;
-  };
-  return (value) => {
-    waiting = { value };
-    running ??= run();
-    return running;
-  };
+  }
 }

@@ -186,7 +186,7 @@ describe('problems', () => {
   test('each code of the service has advice in complete sentences', () => {
     const codes =
       'bad_request unauthorized forbidden not_found timed_out conflict too_large unsupported_media_type unusable_data ' +
-      'no_swing idempotency_key_reused too_many_requests headers_too_large internal cannot_write stopping unreachable bad_answer';
+      'no_swing idempotency_key_reused too_many_samples too_many_requests headers_too_large internal cannot_write stopping unreachable bad_answer';
     for (const code of codes.split(' ')) expect(adviceFor({ ...unreachable('h'), code }), code).toMatch(/^[A-Z“].*\.$/);
     expect(adviceFor({ ...unreachable('h'), code: 'never heard' })).toBe('');
   });

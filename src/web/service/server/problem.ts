@@ -42,6 +42,7 @@ const kAdvice: Record<string, string> = {
   unusable_data: 'Correct the file at that place, or give columns, units and calibration under “Further options”.',
   no_swing: 'Choose a window that holds a free swing, --from and --to, or another recording.',
   idempotency_key_reused: 'Try again: this counts as a new request.',
+  too_many_samples: 'Choose a shorter window, --from and --to, and fit again.',
   too_many_requests: 'Wait a moment, then try again.',
   headers_too_large: 'Shorten the name or the options.',
   internal: 'This is a fault of the service, not of your file. Its log says more.',

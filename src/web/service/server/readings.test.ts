@@ -42,6 +42,12 @@ test('a fit that the service does not hold is made again by asking for its serie
   await expect(readingsOf('a', kRequest)).rejects.toThrow('ask for the series');
 });
 
+test('a fit that the service never holds is not made again', async () => {
+  const asked = served(problem(422, 'too_many_samples', 'this fit used 150000 samples'));
+  await expect(readingsOf('a', kRequest)).rejects.toThrow('150000 samples');
+  expect(asked.length).toBe(1);
+});
+
 test('another problem is passed on', async () => {
   const asked = served(problem(400, 'bad_request', 'inertia is -1'));
   await expect(readingsOf('a', kRequest)).rejects.toThrow('inertia is -1');

@@ -12,9 +12,9 @@ import { rootMeanSquare, type Samples } from '../../shared/samples';
 import { figure, section } from '../../shared/section';
 import { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, spacedUnit, symbolOf, unitText, wordsOf } from '../../shared/units';
-import { forNewest } from '../newest';
-import { problemOf } from '../server/problem';
+import { Cancelled, problemOf } from '../server/problem';
 import { readingsOf } from '../server/readings';
+import { FollowedCurve, type Curve } from './followed_curve';
 import { scalesOf, sliderNames, sliderRange, type Scales } from './slider_ranges';
 
 const kSteps = 400; // of a slider
@@ -37,15 +37,15 @@ class SlidersSection {
   private readonly estimates: Record<string, number> = {};
   private readonly values: Record<string, number>;
   /** The curve of the fit, and its residual. */
-  private readonly best: { time: Float64Array; values: Float64Array; rms: number };
+  private readonly best: Curve;
   private readonly simulated: Trace;
   private simulatedRms: number;
   private readonly plot: TimePlot;
   private readonly view: TimeView;
   private readonly rms = el('output', { class: 'slider-rms' });
-  private readonly problem = el('p', { class: 'alarm', role: 'status' });
+  private readonly problem = el('p', { role: 'status' });
   private readonly resets: (() => void)[] = [];
-  private readonly ask = forNewest((changed: Record<string, number>) => this.follow(changed));
+  private readonly curve: FollowedCurve;
 
   constructor(
     private readonly of: { id: string; recording: number; signal: AbortSignal },
@@ -58,6 +58,12 @@ class SlidersSection {
     this.values = { ...this.estimates };
     const [time, values, measuredThere] = [samples.time, fitted, samples.measured].map(thinned);
     this.best = { time, values, rms: rootMeanSquare(measuredThere.map((value, i) => value - values[i])) };
+    this.curve = new FollowedCurve(
+      this.best,
+      (changed, signal) => this.askFor(changed, signal),
+      (curve, problem) => this.show(curve, problem),
+      of.signal,
+    );
     this.simulatedRms = this.best.rms;
     this.simulated = { name: 'simulated', time, values, mark: modelMark(0), shown: true };
     const measured = { name: 'measured', time: samples.time, values: samples.measured, mark: kMeasured, shown: true };
@@ -86,32 +92,26 @@ class SlidersSection {
     this.rms.textContent = words[0].toUpperCase() + words.slice(1);
   }
 
-  private show({ time, values, rms }: { time: Float64Array; values: Float64Array; rms: number }, problem = ''): void {
+  private show({ time, values, rms }: Curve, problem?: unknown): void {
     Object.assign(this.simulated, { time, values });
     this.simulatedRms = rms;
-    this.problem.textContent = problem;
+    this.problem.className = problem instanceof Cancelled ? 'absent' : 'alarm';
+    this.problem.textContent = problem === undefined ? '' : problemOf(problem).detail;
     this.tell();
     this.plot.chart.update();
   }
 
-  /** Shows the curve for the parameters that differ from the fit, or why there is none. */
-  private async follow(changed: Record<string, number>): Promise<void> {
-    if (Object.keys(changed).length === 0) return this.show(this.best);
-    const { id, recording, signal } = this.of;
-    try {
-      const answer = await readingsOf(id, { parameters: changed, model: this.fit.model, recording }, signal);
-      const [time, values] = [answer.time_s, answer.value].map((numbers) => Float64Array.from(numbers));
-      this.show({ time, values, rms: answer.rms_residual });
-    } catch (error) {
-      if (signal.aborted) return;
-      const { time } = this.best;
-      this.show({ time, values: time.map(() => NaN), rms: NaN }, problemOf(error).detail);
-    }
+  /** The curve for the parameters that differ from the fit. */
+  private async askFor(changed: Record<string, number>, signal: AbortSignal): Promise<Curve> {
+    const { id, recording } = this.of;
+    const answer = await readingsOf(id, { parameters: changed, model: this.fit.model, recording }, signal);
+    const [time, values] = [answer.time_s, answer.value].map((numbers) => Float64Array.from(numbers));
+    return { time, values, rms: answer.rms_residual };
   }
 
   private changed(): void {
     const moved = Object.entries(this.values).filter(([name, value]) => value !== this.estimates[name]);
-    void this.ask(Object.fromEntries(moved));
+    void this.curve.follow(Object.fromEntries(moved));
   }
 
   private slider(name: string): HTMLElement {
