@@ -45,10 +45,10 @@ std::string DegreesOfFreedomText(int degrees) {
 }
 
 std::string Quoted(std::string_view text) {
-  constexpr std::size_t most = 40;
+  constexpr std::size_t kShown = 40;
   std::string shown = "\"";
   std::size_t i = 0;
-  for (; i < text.size() && shown.size() <= most; ++i) {
+  for (; i < text.size() && shown.size() <= kShown; ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     if (const std::size_t size = SizeOfLetterBeyondAscii(text.substr(i)); size > 0) {
       shown += text.substr(i, size);
