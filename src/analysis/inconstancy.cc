@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -154,46 +153,48 @@ std::string ChangeText(const ParameterEstimate& parameter, const Change& change)
          (parameter.unit == "1" ? "" : " " + parameter.unit) + " between " + std::string(change.parts);
 }
 
-/// A change or an error of one parameter in one recording: its standard deviation, or std::nullopt if it is not known.
-using StdDevIn = std::function<std::optional<double>(const RunAlone& run, const ParameterEstimate& parameter)>;
-
-/// Root mean square of a parameter's standard deviations in all recordings where they are known, weighted with 1 /
-/// std_error², or equally if no recording determines the parameter.
-double CommonStdDev(std::string_view name, const std::vector<RunAlone>& runs, const StdDevIn& std_dev_in) {
-  std::vector<double> std_devs, weights;
-  for (const RunAlone& run : runs) {
-    const ParameterEstimate* const parameter = run.fit.Find(name);
-    const std::optional<double> own = parameter == nullptr ? std::nullopt : std_dev_in(run, *parameter);
-    if (!own) continue;
+/// Root mean square of a parameter's standard deviations in K recordings, of those where they are known, weighted with
+/// 1 / std_error², or equally if no recording determines the parameter.
+double CommonStdDev(std::string_view name, const std::vector<RunAlone>& runs,
+                    const std::vector<std::optional<double>>& std_devs) {
+  std::vector<double> known, weights;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const ParameterEstimate* const parameter = runs[k].fit.Find(name);
+    if (parameter == nullptr || !std_devs[k]) continue;
     const double error = parameter->std_error.value_or(0);
-    std_devs.push_back(*own);
+    known.push_back(*std_devs[k]);
     weights.push_back(error > 0 ? 1 / (error * error) : 0);
   }
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   const double equal = 1 / static_cast<double>(weights.size());
   double square = 0;
-  for (std::size_t k = 0; k < std_devs.size(); ++k) {
-    square += (sum > 0 ? weights[k] / sum : equal) * std_devs[k] * std_devs[k];
-  }
+  for (std::size_t k = 0; k < known.size(); ++k) square += (sum > 0 ? weights[k] / sum : equal) * known[k] * known[k];
   return std::sqrt(square);
 }
 
+/// The changes in one recording; std::nullopt if it was not tested.
+using TestedChanges = std::optional<std::vector<Change>>;
+
+TestedChanges ChangesOf(const RunAlone& run) {
+  const Constancy* const constancy = run.constancy;
+  if (constancy == nullptr || (constancy->windows.empty() && constancy->halves.empty())) return std::nullopt;
+  return Changes(*constancy, run.fit);
+}
+
 /// How much a parameter changes within all recordings that were tested. `parts` are those of the largest change.
-Change CommonChange(std::string_view name, const std::vector<RunAlone>& runs) {
-  Change common{name, 0, ""};
-  double largest = 0;
-  common.std_dev =
-      CommonStdDev(name, runs, [&](const RunAlone& run, const ParameterEstimate&) -> std::optional<double> {
-        const Constancy* const constancy = run.constancy;
-        if (constancy == nullptr || (constancy->windows.empty() && constancy->halves.empty())) return std::nullopt;
-        const std::vector<Change> changes = Changes(*constancy, run.fit);
-        const auto change = std::ranges::find(changes, name, &Change::name);
-        if (change == changes.end()) return 0;
-        if (change->std_dev > largest) common.parts = change->parts;
-        largest = std::max(largest, change->std_dev);
-        return change->std_dev;
-      });
-  return common;
+Change CommonChange(std::string_view name, const std::vector<RunAlone>& runs, const std::vector<TestedChanges>& all) {
+  Change largest{name, 0, ""};
+  std::vector<std::optional<double>> std_devs;
+  for (const TestedChanges& changes : all) {
+    if (!changes) {
+      std_devs.emplace_back();
+      continue;
+    }
+    const auto change = std::ranges::find(*changes, name, &Change::name);
+    std_devs.emplace_back(change == changes->end() ? 0 : change->std_dev);
+    if (*std_devs.back() > largest.std_dev) largest = *change;
+  }
+  return {name, CommonStdDev(name, runs, std_devs), largest.parts};
 }
 
 /// Standard deviation of a parameter between recordings beyond their errors, if that is significant. Short recordings
@@ -217,10 +218,13 @@ double BeyondChange(double law_error, const ParameterEstimate& parameter) {
 }
 
 double CommonFrictionLawError(std::string_view name, const std::vector<RunAlone>& runs) {
-  return CommonStdDev(name, runs, [](const RunAlone& run, const ParameterEstimate& own) -> std::optional<double> {
-    if (run.constancy == nullptr) return std::nullopt;
-    return FrictionLawError(*run.constancy, own);
-  });
+  std::vector<std::optional<double>> errors;
+  for (const RunAlone& run : runs) {
+    const ParameterEstimate* const own = run.fit.Find(name);
+    const bool is_known = own != nullptr && run.constancy != nullptr;
+    errors.push_back(is_known ? std::optional(FrictionLawError(*run.constancy, *own)) : std::nullopt);
+  }
+  return CommonStdDev(name, runs, errors);
 }
 
 /// Adds a systematic error to a parameter of the fit to all recordings and of the parts of several recordings.
@@ -233,10 +237,12 @@ void AddToAll(std::string_view name, ErrorSource source, double std_dev, FitRepo
 
 void AddInconstancyError(const std::vector<RunAlone>& runs, const std::vector<SharedParameter>& between,
                          FitReport& whole, std::span<FitReport> parts) {
+  std::vector<TestedChanges> changes;
+  for (const RunAlone& run : runs) changes.push_back(ChangesOf(run));
   std::string text;
   for (const ParameterEstimate& parameter : whole.parameters) {
     if (runs.size() > 1 && !parameter.std_error) continue;
-    Change change = CommonChange(parameter.info.name, runs);
+    Change change = CommonChange(parameter.info.name, runs, changes);
     const double between_runs = ChangeBetweenRuns(parameter.info.name, between);
     if (between_runs > change.std_dev) change = {parameter.info.name, between_runs, "recordings"};
     if (!(change.std_dev > 0)) continue;

@@ -160,16 +160,6 @@ void UsePosteriorMeans(const LinearizedFit& linear, const Posterior& posterior, 
   report.statistics.rms_residual = run.problem.RmsResidual(report.fitted);
 }
 
-/// The optimum in which the parameters at bounds are free, as the posterior requires.
-Optimum WithoutBounds(const Optimum& optimum) {
-  Optimum free = optimum;
-  free.free.insert(free.free.end(), free.at_bound.begin(), free.at_bound.end());
-  std::ranges::sort(free.free);
-  free.at_bound.clear();
-  free.inverse = InvertInformation(free.information, free.free);
-  return free;
-}
-
 }  // namespace
 
 bool NeedsProfiles(const SolvedFit& fit, const Optimum& optimum, const Errors& errors) {
@@ -216,7 +206,7 @@ std::optional<Optimum> UsePosterior(const FittedRun& run, const Optimum& smooth,
   const bool is_autocorrelated = run.correlation.kind != Autocorrelation::Kind::kWhite;
   if (!is_auto || is_autocorrelated || !HasLittleNoise(run) || run.problem.data.time.size() > kMaxSamples)
     return std::nullopt;
-  Optimum optimum = WithoutBounds(smooth);
+  Optimum optimum = WithoutBounds(smooth, smooth.information);
   if (optimum.free.empty() || !optimum.inverse.identifiable) return std::nullopt;
   const LinearizedFit linear = LinearizeFit(run, optimum);
   const Result<Posterior> posterior = SamplePosterior(linear, run.options.seed, run.options.stop);

@@ -103,15 +103,10 @@ bool HasPosteriors(const JointProblem& joint) {
 }
 
 bool UsePosteriors(JointProblem& joint, Solution& solution, Optimum& known) {
-  Optimum optimum = known;
-  optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
-  std::ranges::sort(optimum.free);
-  optimum.at_bound.clear();
   CombinedParabolas combined = CombineParabolas(joint);
-  optimum.inverse = InvertInformation(combined.information, optimum.free);
+  Optimum optimum = WithoutBounds(known, combined.information);
   double sum = 0;
   if (!optimum.inverse.identifiable || !joint.cost->SumOfSquares(combined.parameters, &sum)) return false;
-  optimum.information = std::move(combined.information);
   optimum.gradient.setZero();
   known = std::move(optimum);
   solution.parameters = std::move(combined.parameters);

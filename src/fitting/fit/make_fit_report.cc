@@ -206,10 +206,11 @@ void SetErrors(const Correction& corrected, FitState& state) {
     for (NoiseErrors& run : errors.runs) run.method = "posteriors of the separate recordings, combined as parabolas";
   }
   const auto own_optimum = [&](std::size_t k) -> const Optimum& { return sampled ? *sampled : state.own[k]; };
+  const Optimum& all = sampled ? *sampled : state.optimum;
   std::vector<Errors> own;
   std::vector<std::vector<SystematicCovariance>> own_systematic;
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
-    own.push_back(OwnErrors(fit, k, own_optimum(k), sampled.value_or(state.optimum), errors));
+    own.push_back(OwnErrors(fit, k, own_optimum(k), all, errors));
     own_systematic.push_back(SystematicOf(systematic, fit.runs[k].at));
     SetOwnErrors(fit.runs[k], own_optimum(k), own[k], own_systematic[k], state.descriptions[k].report);
   }

@@ -28,6 +28,15 @@ std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares
   return optimum;
 }
 
+Optimum WithoutBounds(Optimum optimum, const Eigen::MatrixXd& information) {
+  optimum.information = information;
+  optimum.free.insert(optimum.free.end(), optimum.at_bound.begin(), optimum.at_bound.end());
+  std::ranges::sort(optimum.free);
+  optimum.at_bound.clear();
+  optimum.inverse = InvertInformation(optimum.information, optimum.free);
+  return optimum;
+}
+
 Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum) {
   Eigen::VectorXd readings;
   Eigen::MatrixXd jacobian;

@@ -39,11 +39,14 @@ struct TwoSolved {
   }
 };
 
+void ExpectEnding(const Ending& ending, Termination termination, const std::string& reason) {
+  EXPECT_EQ(ending.termination, termination);
+  EXPECT_EQ(ending.reason, reason);
+}
+
 TEST(EndingOf, IsConvergedAtTheMinimumOfSeveral) {
   TwoSolved two;
-  const Ending ending = two.End();
-  EXPECT_EQ(ending.termination, Termination::kConverged);
-  EXPECT_EQ(ending.reason, "the estimates are within 0.1 standard errors of the minimum");
+  ExpectEnding(two.End(), Termination::kConverged, "the estimates are within 0.1 standard errors of the minimum");
 }
 
 // If a parameter is one standard error off and the others follow, A p = -gradient is 0 but for that parameter.
@@ -61,11 +64,10 @@ TEST(EndingOf, NamesTheRecordingsThatAreNotExplained) {
   TwoSolved two;
   two.joint.members[1].solution.readings.setConstant(two.joint.members[1].recording->value.mean());
   two.optimum.inverse.identifiable = false;  // comes second
-  const Ending ending = two.End();
-  EXPECT_EQ(ending.termination, Termination::kNotConverged);
-  EXPECT_EQ(ending.reason,
-            "these are not swings of one pendulum with one inertia, viscous and coulomb: the best joint trajectories "
-            "leave 100 % of the variance of recording 2 unexplained");
+  ExpectEnding(
+      two.End(), Termination::kNotConverged,
+      "these are not swings of one pendulum with one inertia, viscous and coulomb: the best joint trajectories "
+      "leave 100 % of the variance of recording 2 unexplained");
 }
 
 TEST(EndingOf, NamesTheRecordingOfWhatIsNotDetermined) {
@@ -106,9 +108,7 @@ TEST(EndingOf, KeepsTheAmbiguityOfASeparateFit) {
   TwoSolved two;
   two.runs.alone[1].reason = "with radius 0.2 the fit is nearly as good";
   two.runs.alone[1].warnings.push_back({"ambiguous_sensor", two.runs.alone[1].reason});
-  const Ending ending = two.End();
-  EXPECT_EQ(ending.termination, Termination::kNotIdentifiable);
-  EXPECT_EQ(ending.reason, "recording 2: with radius 0.2 the fit is nearly as good");
+  ExpectEnding(two.End(), Termination::kNotIdentifiable, "recording 2: with radius 0.2 the fit is nearly as good");
 }
 
 TEST(EndingOf, SaysThatNothingWasFitted) {

@@ -25,6 +25,9 @@ struct Optimum {
 /// Returns std::nullopt if the trajectory cannot be computed.
 std::optional<Optimum> Linearize(const SolveOptions& options, const LeastSquares& cost, const Solution& solution);
 
+/// The optimum in which the parameters at bounds are free, as a posterior requires, with this information (P x P).
+Optimum WithoutBounds(Optimum optimum, const Eigen::MatrixXd& information);
+
 /// Derivatives of the readings with respect to the free parameters, N x F. No rows if there is no trajectory.
 Eigen::MatrixXd FreeJacobian(const TrajectoryCost& cost, const Solution& solution, const Optimum& optimum);
 
