@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include "pendulum/base/distributions.h"
@@ -42,12 +41,11 @@ std::string CausesOf(double excess) {
                     : "a wrong mass or length, or a spring, cable or hose at the axis";
 }
 
-/// `lacks`: what has no standard deviations, if there is no z.
-void SetTexts(std::string_view lacks, RigVerdict& verdict) {
+void SetTexts(RigVerdict& verdict) {
   const std::string excess = ExcessText(verdict.excess);
   const std::string size = "the fitted inertia is " + excess + " than the rig's";
   if (!verdict.z) {
-    verdict.finding = size + "; " + std::string(lacks) + " gives no standard deviations, so this is no verdict";
+    verdict.finding = size + "; the fit gives no standard deviation, so this is no verdict";
     return;
   }
   const std::string z = "z " + NumberText(*verdict.z, 2);
@@ -76,11 +74,11 @@ std::optional<RigVerdict> JudgeInertia(const std::optional<Rig>& rig, const FitR
   const auto own = std::ranges::find(all, false, &GeometricInertia::is_point_mass);
   if (own == all.end() || !(own->value > 0)) return std::nullopt;
   RigVerdict verdict{own->value, inertia->estimate, inertia->estimate / own->value - 1, {}, "", "", ""};
-  if (own->std_error && inertia->std_error) {
+  if (inertia->std_error) {
     const double error = std::hypot(own->difference_std_error, OwnError(*inertia), GeometryError(*rig, own->value));
     if (error > 0) verdict.z = (verdict.fitted - verdict.geometric) / error;
   }
-  SetTexts(own->std_error ? "the fit" : "the rig", verdict);
+  SetTexts(verdict);
   return verdict;
 }
 

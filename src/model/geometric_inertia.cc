@@ -32,9 +32,9 @@ std::optional<Inertias> InertiasOf(const Json& description) {
 }
 
 /// The description with one value increased by its standard deviation.
-Json Varied(Json description, const std::string& key) {
-  const double value = ValueOfEntry(description.at(key)) + StdDevOfEntry(description.at(key));
-  description[key] = value;
+Json Varied(Json description, const RigKey& key) {
+  Json& entry = description.at(key.name);
+  entry = ValueOfEntry(entry) + StdDevOfEntry(key, entry);
   return description;
 }
 
@@ -53,9 +53,9 @@ std::vector<GeometricInertia> GeometricInertias(const Rig& rig, double fitted) {
   for (GeometricInertia& inertia : all) {
     double variance = 0;
     double difference_variance = 0;
-    for (const auto& item : rig.source.items()) {
-      if (StdDevOfEntry(item.value()) == 0) continue;
-      const std::optional<Inertias> varied = InertiasOf(Varied(rig.source, item.key()));
+    for (const RigKey& key : RigKeys()) {
+      if (!rig.source.contains(key.name) || StdDevOfEntry(key, rig.source.at(key.name)) == 0) continue;
+      const std::optional<Inertias> varied = InertiasOf(Varied(rig.source, key));
       if (!varied) continue;
       const double change = (inertia.is_point_mass ? *varied->point_mass : varied->own) - inertia.value;
       const double fitted_change = fitted * (varied->gravity_torque / base->gravity_torque - 1);

@@ -212,25 +212,28 @@ Result<double> ReadNumber(const Json& json, const std::string& key, bool may_be_
 }
 
 /// The value of `key`, which must exist.
-Result<RigValue> ReadValue(const Json& rig, std::string_view key, const std::string& name) {
-  const Json& json = *rig.find(key);
-  const bool may_be_zero = key == "rod_mass";
+Result<RigValue> ReadValue(const Json& rig, const RigKey& key, const std::string& name) {
+  const Json& json = *rig.find(key.name);
+  const bool may_be_zero = key.name == "rod_mass";
   if (!json.is_object()) {
-    return ReadNumber(json, Quoted(key), may_be_zero, name).map([](double number) { return RigValue{number, 0}; });
+    ASSIGN_OR_RETURN(const double number, ReadNumber(json, Quoted(key.name), may_be_zero, name));
+    return RigValue{number, NominalStdDev(key.quantity, number)};
   }
   RigValue value;
   for (const auto& item : json.items()) {
     const std::string& part = item.key();
     const bool is_value = part == "value";
     if (!is_value && part != "std_dev") {
-      return Fault(name, Quoted(part) + " is not a key of " + Quoted(key) + R"(; its keys are "value" and "std_dev")");
+      return Fault(name,
+                   Quoted(part) + " is not a key of " + Quoted(key.name) + R"(; its keys are "value" and "std_dev")");
     }
     const Result<double> read =
-        ReadNumber(item.value(), Quoted(part) + " of " + Quoted(key), may_be_zero || !is_value, name);
+        ReadNumber(item.value(), Quoted(part) + " of " + Quoted(key.name), may_be_zero || !is_value, name);
     if (!read) return tl::unexpected(read.error());
     (is_value ? value.value : value.std_dev) = *read;
   }
-  if (!json.contains("value")) return Fault(name, Quoted(key) + R"( has no "value"; add it)");
+  if (!json.contains("value")) return Fault(name, Quoted(key.name) + R"( has no "value"; add it)");
+  if (!json.contains("std_dev")) value.std_dev = NominalStdDev(key.quantity, value.value);
   return value;
 }
 
@@ -241,9 +244,45 @@ bool IsUsable(const RigValue& value) {
   return value.value > kSmallest && value.value < kLargest && std::isfinite(value.std_dev);
 }
 
+/// The errors of all values that give the restoring torque.
+std::vector<RigError> ErrorsOf(const Json& source, const Form& form, const RigValues& values, const Rig& rig) {
+  std::vector<RigError> errors;
+  if (!rig.gives_torque) return errors;
+  for (const RigKey& key : kRigKeys) {
+    const std::optional<RigValue> value = Find(values, key.name);
+    if (!value || !(value->std_dev > 0)) continue;
+    RigValues alone = values;
+    for (auto& [name, other] : alone) other.std_dev = name == key.name ? other.std_dev : 0;
+    Rig with_one = rig;
+    for (const auto& [of_rig, name] : {std::pair{&with_one.gravity, "gravity"}, std::pair{&with_one.length, "length"},
+                                       std::pair{&with_one.mass, "mass"}}) {
+      *of_rig = Find(alone, name);
+    }
+    form.set(alone, with_one);
+    const double of_torque = with_one.gravity_torque.std_dev / with_one.gravity_torque.value;
+    if (of_torque > 0) errors.push_back({key.name, value->std_dev, !HasStdDev(source.at(key.name)), of_torque});
+  }
+  return errors;
+}
+
 }  // namespace
 
 std::span<const RigKey> RigKeys() { return kRigKeys; }
+
+double NominalStdDev(RigQuantity quantity, double value) {
+  constexpr double kOfTool = 1e-3;  // 1 g, 1 mm
+  constexpr double kLeast = 1e-3, kMost = 1e-2, kComputed = 1e-2;
+  constexpr double kGravity = 0.015;
+  switch (quantity) {
+    case RigQuantity::kMass:
+    case RigQuantity::kLength: return std::clamp(kOfTool, kLeast * value, kMost * value);
+    case RigQuantity::kAcceleration: return kGravity;
+    case RigQuantity::kTorque:
+    case RigQuantity::kStiffness:
+    case RigQuantity::kInertia: return kComputed * value;
+  }
+  return 0;
+}
 
 Result<Rig> ParseRig(std::string_view text, const std::string& name) {
   ASSIGN_OR_RETURN(Json source, ParseJsonObject(text, name, "rig", kFormsText));
@@ -251,7 +290,7 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
   RigValues values;
   for (const RigKey& key : kRigKeys) {
     if (!source.contains(key.name)) continue;
-    ASSIGN_OR_RETURN(const RigValue value, ReadValue(source, key.name, name));
+    ASSIGN_OR_RETURN(const RigValue value, ReadValue(source, key, name));
     values[key.name] = value;
   }
   Rig rig;
@@ -269,6 +308,7 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
                  "these values give a torque or inertia outside 1e-30 to 1e30 (SI), which is impossible for a "
                  "pendulum; correct them");
   }
+  rig.errors = ErrorsOf(source, form, values, rig);
   rig.source = std::move(source);
   return rig;
 }

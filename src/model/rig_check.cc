@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -121,24 +122,6 @@ std::string Converted(const Rig& rig) {
   return rig.length ? "g" : "the effective length";
 }
 
-/// The error of a value that nobody stated: ±1 g, ±1 mm, and 1 % of a value that was computed from others.
-double UnstatedError(const RigKey& key, double value) {
-  if (key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength) return 1e-3;
-  return key.quantity == RigQuantity::kAcceleration ? 0 : 0.01 * value;
-}
-
-/// Whether the converting value follows from masses and lengths, not from a torque, a stiffness or an inertia.
-bool ConvertsByMassesAndLengths(const Rig& rig) {
-  return rig.source.contains("rod_length") || rig.source.contains("center_of_mass") ||
-         (rig.length && !rig.known_inertia) || (rig.known_inertia && !rig.source.contains("inertia"));
-}
-
-/// Whether a key enters the converting value if that follows from masses and lengths, or does not.
-bool IsConverting(const RigKey& key, bool by_masses_and_lengths) {
-  if (key.quantity == RigQuantity::kAcceleration) return false;
-  return by_masses_and_lengths == (key.quantity == RigQuantity::kMass || key.quantity == RigQuantity::kLength);
-}
-
 /// A value with a standard deviation, as it is given in the rig file or by flags.
 std::string ErrorExample(const RigKey& key, const Rig& rig) {
   if (!IsGivenByFlags(rig.name)) return Quoted(key.name) + R"(: {"value": ..., "std_dev": ...})";
@@ -150,36 +133,51 @@ std::string HowToGiveError(const RigKey& key, const Rig& rig) {
   return (IsGivenByFlags(rig.name) ? "give it after the value: " : "write ") + ErrorExample(key, rig);
 }
 
-void QuestionExactness(const Rig& rig, std::vector<Warning>& warnings) {
-  const bool is_direct = ConvertsByMassesAndLengths(rig);
-  Json with_errors = rig.source;
-  const RigKey* example = nullptr;
-  for (const RigKey& key : RigKeys()) {
-    if (!rig.source.contains(key.name)) continue;
-    const Json& entry = rig.source.at(key.name);
-    // That of g may be the one that was assumed with g.
-    if (key.quantity != RigQuantity::kAcceleration && StdDevOfEntry(entry) > 0) return;
-    const double value = ValueOfEntry(entry);
-    const bool has_error = IsConverting(key, is_direct) && value > 0;
-    with_errors[key.name] = {{"value", value}, {"std_dev", has_error ? UnstatedError(key, value) : 0}};
-    if (has_error && example == nullptr) example = &key;
+/// The tool that a nominal value is assumed to be measured with, and its error: "scales ±1 g".
+std::string ToolText(RigQuantity quantity, double std_dev) {
+  switch (quantity) {
+    case RigQuantity::kMass: return "scales ±" + NumberText(std_dev * 1e3, kDigits) + " g";
+    case RigQuantity::kLength: return "a ruler ±" + NumberText(std_dev * 1e3, kDigits) + " mm";
+    case RigQuantity::kAcceleration: return "g ±" + NumberText(std_dev, kDigits);
+    case RigQuantity::kTorque: return "a torque ±1 %";
+    case RigQuantity::kStiffness: return "a stiffness ±1 %";
+    case RigQuantity::kInertia: return "an inertia ±1 %";
   }
-  const Result<Rig> assumed = ParseRig(with_errors.dump(), rig.name);
-  if (!assumed || example == nullptr) return;
-  const RigValue converting = Converting(*assumed);
-  if (!(converting.std_dev > 0)) return;
-  const std::string errors =
-      is_direct ? "±1 g in each mass and ±1 mm in each length" : "an error of 1 % in " + std::string(example->name);
+  return "";
+}
+
+/// The standard deviations that a rig has because nobody stated others, or that it has none.
+void SayErrors(const Rig& rig, std::vector<Warning>& warnings) {
+  std::vector<std::string> names, tools;
+  std::map<RigQuantity, double> largest;  // of each quantity, the largest standard deviation
+  const RigKey* first = nullptr;
+  for (const RigKey& key : RigKeys()) {
+    if (!rig.source.contains(key.name) || HasStdDev(rig.source.at(key.name))) continue;
+    const double std_dev = StdDevOfEntry(key, rig.source.at(key.name));
+    if (!(std_dev > 0)) continue;  // a rod that weighs nothing
+    if (first == nullptr) first = &key;
+    names.push_back(KeyText(key, rig.name));
+    largest[key.quantity] = std::max(largest[key.quantity], std_dev);
+  }
+  for (const auto& [quantity, std_dev] : largest) tools.push_back(ToolText(quantity, std_dev));
+  const RigValue converting = Converting(rig);
   const std::string share = NumberText(100 * converting.std_dev / converting.value, 2) + " %";
+  if (first == nullptr) {
+    if (converting.std_dev > 0) return;
+    warnings.push_back({.code = "rig_exact",
+                        .finding = "the rig's standard deviations are 0, so its values count as exact",
+                        .assumed = "rig exact, as stated"});
+    return;
+  }
   warnings.push_back(
-      {.code = "rig_taken_as_exact",
-       .finding = "the rig's values have no standard deviation, so they count as exact",
-       .explanation = errors + " would add a systematic error of " + share + " to " + Converted(rig),
-       .advice = HowToGiveError(*example, rig),
-       .flags = FlagsOf(*example, rig),
-       .assumed = "rig exact (" + std::string(is_direct ? "±1 g, ±1 mm" : "1 % in " + std::string(example->name)) +
-                  " add " + share + ": " +
-                  (IsGivenByFlags(rig.name) ? ErrorExample(*example, rig) : R"("std_dev" in the rig)") + ")"});
+      {.code = "rig_errors_assumed",
+       .finding = NameList(names) + (names.size() == 1 ? " has" : " have") +
+                  " no standard deviation; assumed: " + NameList(tools),
+       .explanation = "all values of the rig together add a systematic error of " + share + " to " + Converted(rig),
+       .advice = HowToGiveError(*first, rig) + ", 0 if it is exact",
+       .flags = FlagsOf(*first, rig),
+       .assumed = NameList(tools) + " (" + share + ": " +
+                  (IsGivenByFlags(rig.name) ? ErrorExample(*first, rig) : R"("std_dev" in the rig)") + ")"});
 }
 
 // ---- With the swing ------------------------------------------------------------------------------------------------
@@ -290,7 +288,7 @@ std::vector<Warning> QuestionRig(const Rig& rig) {
   std::vector<Warning> warnings;
   if (!rig.source.is_object()) return warnings;  // not from a file
   QuestionValues(rig, warnings);
-  QuestionExactness(rig, warnings);
+  SayErrors(rig, warnings);
   return warnings;
 }
 

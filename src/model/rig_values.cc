@@ -13,8 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// g at sea level is 9.780 to 9.832 m/s² from the equator to the poles.
-constexpr double kMeanGravity = 9.806, kGravityStdDev = 0.015;
+constexpr double kMeanGravity = 9.806;  // m/s², at sea level
 
 /// Whether the values are part of a description that needs g, without it. A length or an inertia beside a mass needs
 /// none; g may be what the user measures.
@@ -27,10 +26,11 @@ bool LacksGravity(const Json& values) {
 /// The rig of the values. If it needs g and has none, it gets the mean at sea level, and a warning says so.
 Result<Rig> ParseWithGravity(Json values, const std::string& name, std::vector<Warning>& warnings) {
   const bool lacks_gravity = LacksGravity(values);
-  if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", kGravityStdDev}};
+  if (lacks_gravity) values["gravity"] = kMeanGravity;
   Result<Rig> rig = ParseRig(JsonText(values), name);
   if (rig && lacks_gravity) {
-    const std::string mean = NumberText(kMeanGravity), std_dev = NumberText(kGravityStdDev);
+    const std::string mean = NumberText(kMeanGravity);
+    const std::string std_dev = NumberText(NominalStdDev(RigQuantity::kAcceleration, kMeanGravity));
     warnings.push_back({.code = "gravity_assumed",
                         .finding = "g was taken as " + mean + " +- " + std_dev + " m/s^2, as at sea level",
                         .advice = "give the local value with --g",

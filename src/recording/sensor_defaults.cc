@@ -95,33 +95,36 @@ double LagOf(const KindDefaults& defaults, const Recording& recording) {
 /// - a quartz crystal, of a computer, a phone or an interface: 50 ppm;
 /// - a ceramic resonator, of most Arduinos: within 0.5 %, a standard deviation of 0.3 %. It is the clock of stamps in
 ///   ms or us, and of counts and volts;
-/// - a logger whose file has only a rate: a loop that waits for the nominal interval takes a few percent more;
+/// - times on an exact grid: made by a timer or an interface with a quartz crystal, or counted by a loop that waits for
+///   the nominal interval and also works, which takes up to 3 % longer. As a standard deviation 1 %;
+/// - a logger whose file has only a rate: such a loop more likely, 3 %;
 /// - a camera's frames: a rate of 30000/1001 is often written as 30.
 EffectSize ClockOf(const std::string& kind, const Recording& recording) {
-  constexpr double kCrystal = 5e-5, kResonator = 3e-3, kLoop = 0.03, kFrames = 1e-3;
+  constexpr double kCrystal = 5e-5, kResonator = 3e-3, kGrid = 0.01, kLoop = 0.03, kFrames = 1e-3;
   const TimeSource source = recording.time_source;
   if (source == TimeSource::kMeasured) return {0, "stated with the clock"};
-  if (source == TimeSource::kComputer) return {kCrystal, "assumed for a computer's clock"};
-  if (kind == "camera") return {kFrames, "assumed for a camera's frame rate"};
-  if (source == TimeSource::kRate) return {kLoop, "assumed for times from a sample rate"};
-  if (source == TimeSource::kDevice || IsRaw(recording)) return {kResonator, "assumed for a ceramic resonator"};
-  return {kCrystal, "assumed for a quartz crystal"};
+  if (source == TimeSource::kComputer) return {kCrystal, "a computer's clock", true};
+  if (kind == "camera") return {kFrames, "a camera's frame rate", true};
+  if (source == TimeSource::kGrid) return {kGrid, "times on an exact grid", true};
+  if (source == TimeSource::kRate) return {kLoop, "times from a sample rate", true};
+  if (source == TimeSource::kDevice || IsRaw(recording)) return {kResonator, "a ceramic resonator", true};
+  return {kCrystal, "a quartz crystal", true};
 }
 
 /// Counts and volts without a calibration have no angle: what is one in rad is unknown, and the gain has no effect.
 void SetAssumed(const KindDefaults& defaults, const Recording& recording, double amplitude, SensorErrors& errors) {
   using enum SensorEffect;
-  const std::string source = "assumed for " + std::string(defaults.with_article);
+  const std::string source(defaults.with_article);
   const double known = IsRaw(recording) && !recording.is_calibrated() ? 0 : 1;
-  errors.Of(kGain) = {known * defaults.gain, source};
-  errors.Of(kCubic) = {defaults.cubic * amplitude, source};
+  errors.Of(kGain) = {known * defaults.gain, source, true};
+  errors.Of(kCubic) = {defaults.cubic * amplitude, source, true};
   constexpr double kShareOfPosition = 0.02;  // a coordinate is no angle
   const double eccentricity =
       recording.quantity == Quantity::kPosition ? kShareOfPosition * amplitude : known * defaults.eccentricity;
-  errors.Of(kEccentricSine) = errors.Of(kEccentricCosine) = {eccentricity, source};
-  errors.Of(kLag) = {LagOf(defaults, recording), source};
-  errors.Of(kBacklash) = {known * defaults.backlash, source};
-  errors.Of(kDrift) = {known * defaults.drift, source};
+  errors.Of(kEccentricSine) = errors.Of(kEccentricCosine) = {eccentricity, source, true};
+  errors.Of(kLag) = {LagOf(defaults, recording), source, true};
+  errors.Of(kBacklash) = {known * defaults.backlash, source, true};
+  errors.Of(kDrift) = {known * defaults.drift, source, true};
   errors.Of(kClock) = ClockOf(errors.kind, recording);
 }
 

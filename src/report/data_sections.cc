@@ -87,13 +87,16 @@ Section RecordingSection(const Identification& identification) {
 
 /// The rig as its user described it, in SI units.
 Section RigSection(const Rig& rig) {
-  Table table{{{"name"}, {"value", true}, {"± std dev", false, 1}, {"unit"}}};
+  Table table{{{"name"}, {"value", true}, {"± std dev", false, 1}, {"unit"}, {"std dev"}}};
   for (const RigKey& key : RigKeys()) {
     const auto found = rig.source.is_object() ? rig.source.find(key.name) : rig.source.end();
     if (found == rig.source.end()) continue;
-    const double std_dev = StdDevOfEntry(*found);
+    const double std_dev = StdDevOfEntry(key, *found);
     const QuantityNumbers numbers(ValueOfEntry(*found), std_dev > 0 ? std::optional(std_dev) : std::nullopt);
-    table.rows.push_back({std::string(key.name), numbers.Value(), numbers.Error(), std::string(key.unit)});
+    table.rows.push_back({std::string(key.name), numbers.Value(), numbers.Error(), std::string(key.unit),
+                          !HasStdDev(*found) ? "assumed"
+                          : std_dev > 0      ? "stated"
+                                             : "exact"});
   }
   return {"Rig", "", {std::move(table)}};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pendulum/report/ambiguity_sections.h"
+#include "pendulum/report/budget_sections.h"
 #include "pendulum/report/closed_form_json.h"
 #include "pendulum/report/comparison_json.h"
 #include "pendulum/report/equation.h"
@@ -32,6 +33,15 @@ Json ErrorBudgetJson(const std::optional<double>& std_error, const SystematicErr
   return budget;
 }
 
+/// The 95 % interval with all errors, of a ParameterEstimate or DerivedQuantity.
+template <typename Estimated>
+Json TotalIntervalJson(const Estimated& quantity) {
+  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
+    return TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic);
+  };
+  return IntervalJson(end(IntervalEnd::kLower, quantity.lower95), end(IntervalEnd::kUpper, quantity.upper95));
+}
+
 Json ParameterJson(const ParameterEstimate& parameter) {
   NumberObject object;
   if (parameter.open_interval != OpenInterval::kClosed) {
@@ -43,6 +53,7 @@ Json ParameterJson(const ParameterEstimate& parameter) {
       .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
       .Set("systematic_std_error", NumberOrNull(parameter.systematic.Total()))
       .Set("total_std_error", NumberOrNull(TotalStdError(parameter.std_error, parameter.systematic)))
+      .Set("total_interval95", TotalIntervalJson(parameter))
       .Set("error_budget", ErrorBudgetJson(parameter.std_error, parameter.systematic))
       .Set("unit", Json(parameter.unit))
       .Set("fixed", Json(parameter.fixed))
@@ -103,6 +114,8 @@ Json DerivedJson(const FitReport& fit) {
         .Set("unit", Json(quantity.unit));
     if (const auto systematic = quantity.systematic.Total()) {
       json.Set("systematic_std_error", *systematic)
+          .Set("total_std_error", NumberOrNull(TotalStdError(quantity.std_error, quantity.systematic)))
+          .Set("total_interval95", TotalIntervalJson(quantity))
           .Set("error_budget", ErrorBudgetJson(quantity.std_error, quantity.systematic));
     }
     derived[quantity.name] = json.Done();
@@ -194,6 +207,7 @@ nlohmann::ordered_json FitJson(const Identification& identification, std::size_t
   json["covariance"] = CovarianceJson(fit, shows);
   json["correlation"] = CorrelationJson(fit, shows);
   json["systematic_covariance"] = SystematicJson(fit, shows);
+  json["budget"] = BudgetJson(fit);
   json["std_error_method"] = TextOrNull(fit.std_error_method);
   json["interval_method"] = TextOrNull(fit.interval_method);
   json["identifiability"] = IdentifiabilityJson(fit, shows);

@@ -14,6 +14,7 @@
 #include "pendulum/base/rounding.h"
 #include "pendulum/report/agreement_section.h"
 #include "pendulum/report/ambiguity_sections.h"
+#include "pendulum/report/budget_sections.h"
 #include "pendulum/report/comparison_text.h"
 #include "pendulum/report/data_sections.h"
 #include "pendulum/report/equation.h"
@@ -367,7 +368,6 @@ Sections OwnSections(const Identification& identification, std::size_t index, st
   Sections sections = ConstancySections(recording.ConstancyOf(index));
   std::ranges::move(SuspicionSections(fit), std::back_inserter(sections));
   for (Section& section : sections) section.remark = identification.is_joint() ? "of the separate fit" : "";
-  std::ranges::move(SensorSections(fit, recording.used.sensor_errors), std::back_inserter(sections));
   return OfRecording(identification, k, std::move(sections));
 }
 
@@ -419,6 +419,7 @@ Sections FitSections(const Identification& identification, std::size_t index) {
     }
     sections.push_back(AgreementSection(identification, index));
   }
+  std::ranges::move(BudgetSections(fit), std::back_inserter(sections));
   // If the fit to several recordings did not converge, its motion describes none of them.
   const bool is_failed = fit.termination == Termination::kFailed;
   const bool is_a_motion = !is_failed && !(is_joint && fit.termination == Termination::kNotConverged);

@@ -35,7 +35,7 @@ Json SensorErrorsJson(const DataSummary& data) {
                                                    {"unit", is_relative                    ? "1"
                                                             : effect == SensorEffect::kLag ? "s"
                                                                                            : data.unit},
-                                                   {"source", TextOrNull(size.source)}};
+                                                   {"source", TextOrNull(size.SourceText())}};
   }
   return json;
 }

@@ -14,8 +14,10 @@
 #include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
+#include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/model/friction/dahl.h"
 #include "pendulum/model/friction/stribeck.h"
+#include "pendulum/report/budget_sections.h"
 #include "pendulum/report/closed_form_quantities.h"
 #include "pendulum/report/equation.h"
 #include "pendulum/report/fit_sections.h"
@@ -463,22 +465,37 @@ std::string WithArticle(const std::string& noun) {
   return (std::string_view("aeio").find(noun.front()) < 4 ? "an " : "a ") + noun;
 }
 
-/// What was assumed of the sensors, if errors follow from it.
+/// Adds an assumption if it is not among them.
+void AddOnce(std::string text, std::vector<std::string>& assumptions) {
+  if (!text.empty() && std::ranges::find(assumptions, text) == assumptions.end())
+    assumptions.push_back(std::move(text));
+}
+
+/// "clock ±1 % for times on an exact grid (--sensor)", if nobody stated the clock.
+std::string ClockText(const SensorErrors& sensor) {
+  const EffectSize& clock = sensor.Of(SensorEffect::kClock);
+  if (!clock.is_assumed || !(clock.std_dev > 0)) return "";
+  return "clock ±" + PlainSizeText(clock.std_dev, "1") + " for " + clock.source + " (--sensor)";
+}
+
+/// What was assumed of sensors and clocks, if errors follow from it.
 void AddSensors(const Identification& identification, std::vector<std::string>& assumptions) {
   for (const IdentifiedRecording& recording : identification.recordings) {
     const SensorErrors& sensor = recording.data.sensor;
-    if (!sensor.is_kind_assumed || sensor.kind.empty()) continue;
-    std::string text = WithArticle(sensor.kind) + " (--sensor)";
-    if (std::ranges::find(assumptions, text) == assumptions.end()) assumptions.push_back(std::move(text));
+    if (sensor.is_kind_assumed && !sensor.kind.empty()) AddOnce(WithArticle(sensor.kind) + " (--sensor)", assumptions);
+    AddOnce(ClockText(sensor), assumptions);
   }
+}
+
+/// What one swing cannot tell, unless the rig's own inertia agrees or disagrees with the fit.
+std::string UntoldText(const std::optional<RigVerdict>& rig) {
+  return rig && rig->z ? "" : "firm support, no spring or gear: else inertia is an effective one (--details)";
 }
 
 std::vector<std::string> AssumptionsOf(const std::vector<Warning>& warnings) {
   std::vector<std::string> assumptions;
   for (const Warning& warning : warnings) {
-    std::string text = Printable(warning.assumed);
-    if (text.empty() || std::ranges::find(assumptions, text) != assumptions.end()) continue;
-    assumptions.push_back(std::move(text));
+    AddOnce(Printable(warning.assumed), assumptions);
   }
   return assumptions;
 }
@@ -574,8 +591,13 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
     summary.has_systematic = summary.has_systematic || parameter.systematic.Total().has_value();
   }
   if (summary.has_systematic) AddSensors(identification, summary.assumptions);
-  if (!identification.is_joint()) SetRigVerdict(JudgeInertia(identification.rig, fit), summary);
+  const std::optional<RigVerdict> verdict = JudgeInertia(identification.rig, fit);
+  if (!identification.is_joint()) SetRigVerdict(verdict, summary);
+  AddOnce(UntoldText(verdict), summary.assumptions);
   summary.remarks = RemarksText(fit);
+  if (const std::string largest = LargestErrorText(fit); !largest.empty()) {
+    summary.remarks += (summary.remarks.empty() ? "" : " ") + largest;
+  }
   if (const std::string untested = UntestedText(constancy, fit); !untested.empty()) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
   }

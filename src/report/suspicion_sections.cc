@@ -4,22 +4,14 @@
 #include <algorithm>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "pendulum/base/format.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
-#include "pendulum/recording/sensor_errors.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/text_parts.h"
 
 namespace pendulum {
 namespace {
-
-std::string InWords(std::string_view name) {
-  std::string words(name);
-  std::ranges::replace(words, '_', ' ');
-  return words;
-}
 
 Section SuggestedSection(const FitReport& fit) {
   Section section{"What the residuals suggest"};
@@ -37,35 +29,11 @@ Section SuggestedSection(const FitReport& fit) {
   return section;
 }
 
-/// The unit of an effect's size, for readings in a unit.
-std::string UnitOfEffect(SensorEffect effect, const std::string& reading_unit) {
-  if (effect == SensorEffect::kGain || effect == SensorEffect::kClock) return "1";
-  return effect == SensorEffect::kLag ? "s" : reading_unit;
-}
-
-Section SensorSection(const SensorErrors& sensor, const std::string& reading_unit) {
-  Section section{"What the sensor may do (" + sensor.kind + ")"};
-  Table table{{{"effect"}, {"standard deviation", true}, {"source"}}};
-  for (const SensorEffect effect : kSensorEffects) {
-    const EffectSize& size = sensor.Of(effect);
-    table.rows.push_back({InWords(SensorEffectName(effect)),
-                          size.std_dev > 0 ? PlainSizeText(size.std_dev, UnitOfEffect(effect, reading_unit)) : "0",
-                          size.source});
-  }
-  section.Add(std::move(table));
-  return section;
-}
-
 }  // namespace
 
 Sections SuspicionSections(const FitReport& fit) {
   if (fit.termination != Termination::kConverged) return {};
   return {SuggestedSection(fit)};
-}
-
-Sections SensorSections(const FitReport& fit, const SensorErrors& sensor) {
-  if (fit.termination != Termination::kConverged || sensor.kind.empty()) return {};
-  return {SensorSection(sensor, fit.reading_unit)};
 }
 
 nlohmann::ordered_json SuspicionsJson(const FitReport& fit) {

@@ -32,6 +32,12 @@ std::optional<Conversion> Degrees(std::string_view unit) {
   return std::nullopt;
 }
 
+std::string InWords(std::string_view name) {
+  std::string words(name);
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
 std::string ReadingText(double value, const std::string& unit) {
   constexpr int kReadingDigits = 3;
   const std::optional<Conversion> degrees = Degrees(unit);

@@ -172,7 +172,8 @@ CheckedRun CheckRodAndBob(const std::string& description) {
 
 TEST(ClosedFormRow, RejectsAPointMassForAHeavyRod) {
   const CheckedRun checked = CheckRodAndBob(
-      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})");
   const double inertia = 0.43 * 0.43 * (0.38 + 0.095 / 3);
   const ClosedFormRow& geometry = checked.Row("inertia_geometry");
   EXPECT_EQ(geometry.unit, "kg m^2");
@@ -191,14 +192,16 @@ TEST(ClosedFormRow, RejectsAPointMassForAHeavyRod) {
 
 TEST(ClosedFormRow, AgreesWithAPointMassForAMasslessRod) {
   const CheckedRun checked = CheckRodAndBob(
-      R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.0005, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})");
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, true);
   EXPECT_EQ(checked.Row("inertia_point_mass").agrees, true);
 }
 
-TEST(ClosedFormRow, HasNoZIfTheRigHasNoErrors) {
+TEST(ClosedFormRow, HasNoZIfTheRigIsExact) {
   const CheckedRun checked =
-      CheckRodAndBob(R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81})");
+      CheckRodAndBob(R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+                         "rod_length": {"value": 0.43, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0}})");
   for (const char* quantity : {"inertia_geometry", "inertia_point_mass"}) {
     const ClosedFormRow& row = checked.Row(quantity);
     EXPECT_EQ(row.std_error, std::nullopt);
@@ -211,7 +214,7 @@ TEST(ClosedFormRow, HasNoZIfTheRigHasNoErrors) {
 
 TEST(ClosedFormRow, ComparesAnInertiaGivenByTheRig) {
   const CheckedRun checked =
-      CheckRodAndBob(R"({"gravity_torque": 1.8, "inertia": {"value": 0.08, "std_dev": 0.0002}})");
+      CheckRodAndBob(R"({"gravity_torque": {"value": 1.8, "std_dev": 0}, "inertia": {"value": 0.08, "std_dev": 0.0002}})");
   EXPECT_EQ(checked.Row("inertia_geometry").closed_form, 0.08);
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, true);
   EXPECT_FALSE(checked.Has("inertia_point_mass"));
@@ -228,7 +231,8 @@ TEST(ClosedFormRow, IsMissingWithoutAnInertiaFromTheRig) {
 // agrees.
 TEST(ClosedFormRow, IncludesTheClocksErrorBesideTheGeometry) {
   const Rig rig = Must(ParseRig(
-      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.0005}, "gravity": 9.81})",
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0.0005}, "gravity": {"value": 9.81, "std_dev": 0}})",
       "rig"));
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
@@ -244,7 +248,8 @@ TEST(ClosedFormRow, IncludesTheClocksErrorBesideTheGeometry) {
 // RejectsAPointMassForAHeavyRod tests the text for a point mass that is not adequate.
 TEST(ClosedFormRow, ReportsAnAdequatePointMass) {
   const Rig rig = Must(ParseRig(
-      R"({"bob_mass": 0.38, "rod_mass": 0.0005, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})",
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.0005, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})",
       "rig"));
   SyntheticOptions run = NoisyTextbookRun("viscous");
   run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;

@@ -68,13 +68,23 @@ TEST(JudgeInertia, NamesCausesAndTheExperimentIfTheyDiffer) {
   EXPECT_THAT(smaller->text(), AllOf(HasSubstr("11 % smaller"), HasSubstr("spring, cable")));
 }
 
-TEST(JudgeInertia, IsNoVerdictWithoutErrorsOfTheRig) {
-  const auto rig = Must(ParseRig(R"({"gravity_torque": 1.8, "inertia": 0.070})", "rig"));
+TEST(JudgeInertia, TakesAnExactRigAtItsWord) {
+  const auto rig = Must(ParseRig(
+      R"({"gravity_torque": {"value": 1.8, "std_dev": 0}, "inertia": {"value": 0.079, "std_dev": 0}})", "rig"));
   const auto verdict = JudgeInertia(rig, FitWithInertia());
+  ASSERT_TRUE(verdict && verdict->z);
+  EXPECT_NEAR(*verdict->z, 5, 1e-9);  // 0.001 / 0.0002
+}
+
+TEST(JudgeInertia, IsNoVerdictWithoutAnErrorOfTheFit) {
+  const auto rig = Must(ParseRig(R"({"gravity_torque": 1.8, "inertia": 0.070})", "rig"));
+  FitReport fit = FitWithInertia();
+  fit.parameters[0].std_error.reset();
+  const auto verdict = JudgeInertia(rig, fit);
   ASSERT_TRUE(verdict);
   EXPECT_FALSE(verdict->z);
   EXPECT_FALSE(verdict->differs());
-  EXPECT_THAT(verdict->text(), HasSubstr("14 % larger than the rig's; the rig gives no standard deviations"));
+  EXPECT_THAT(verdict->text(), HasSubstr("14 % larger than the rig's; the fit gives no standard deviation"));
 }
 
 TEST(JudgeInertia, NeedsAnInertiaAndAResult) {

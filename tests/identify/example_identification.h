@@ -218,7 +218,7 @@ inline Identification ExampleIdentification() {
   recording.data.resolution_source = "found";
   recording.data.sensor.kind = "potentiometer";
   recording.data.sensor.Of(SensorEffect::kGain) = {0.0078125, "calibration"};
-  recording.data.sensor.Of(SensorEffect::kLag) = {0.001, "assumed for a potentiometer"};
+  recording.data.sensor.Of(SensorEffect::kLag) = {0.001, "a potentiometer", true};
   recording.data.begins = "held, then released";
   recording.data.ends = "the end of the recording";
   recording.data.releases = {{1.5, 19.5}};

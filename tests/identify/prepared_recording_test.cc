@@ -66,7 +66,7 @@ class PrepareFileTest : public testing::Test {
     auto prepared = PrepareFile(path_, options, std::nullopt);
     const auto result = IdentifyEach(options, *std::move(prepared));
     const SensorErrors& sensor = result.front().value().recordings.front().data.sensor;
-    std::string summary = sensor.kind + ", gain: " + sensor.Of(SensorEffect::kGain).source;
+    std::string summary = sensor.kind + ", gain: " + sensor.Of(SensorEffect::kGain).SourceText();
     for (const Warning& warning : result.front()->recordings.front().warnings)
       summary += ", " + std::string(warning.code.text());
     return summary;

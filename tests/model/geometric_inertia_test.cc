@@ -88,7 +88,8 @@ TEST(GeometricInertias, ShareTheRigsErrorsWithTheFit) {
 // With a massless rod, inertia and torque are both proportional to the bob's mass, so an error of that mass cancels.
 TEST(GeometricInertias, HaveNoErrorOfDifferenceForACommonError) {
   const std::vector<GeometricInertia> inertias = GeometricInertias(
-      ParsedRig(R"({"bob_mass": {"value": 0.4, "std_dev": 0.01}, "rod_mass": 0, "rod_length": 0.5, "gravity": 9.81})"),
+      ParsedRig(R"({"bob_mass": {"value": 0.4, "std_dev": 0.01}, "rod_mass": 0,
+                    "rod_length": {"value": 0.5, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0}})"),
       0.1);
   ASSERT_THAT(inertias, SizeIs(2));
   for (const GeometricInertia& inertia : inertias) {
@@ -98,9 +99,10 @@ TEST(GeometricInertias, HaveNoErrorOfDifferenceForACommonError) {
   }
 }
 
-TEST(GeometricInertias, HaveNoErrorsIfTheRigGivesNoErrors) {
+TEST(GeometricInertias, HaveNoErrorsIfTheRigIsExact) {
   const std::vector<GeometricInertia> inertias =
-      Inertias(R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": 9.81})");
+      Inertias(R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+                   "rod_length": {"value": 0.43, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0}})");
   ASSERT_THAT(inertias, SizeIs(2));
   for (const GeometricInertia& inertia : inertias) {
     EXPECT_FALSE(inertia.std_error);
@@ -111,7 +113,8 @@ TEST(GeometricInertias, HaveNoErrorsIfTheRigGivesNoErrors) {
 // The error of gravity changes the fitted inertia but not the geometric one.
 TEST(GeometricInertias, DifferByTheErrorOfGravityAlone) {
   const std::vector<GeometricInertia> inertias = Inertias(
-      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": 0.43, "gravity": {"value": 9.81, "std_dev": 0.02}})");
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0.02}})");
   ASSERT_THAT(inertias, SizeIs(2));
   for (const GeometricInertia& inertia : inertias) {
     EXPECT_THAT(inertia.std_error.value_or(0), DoubleNear(0, 1e-15));
@@ -132,8 +135,9 @@ TEST(GeometricInertias, UseAnInertiaGivenInTheFile) {
 // An inertia from CAD replaces the one computed from rod and bob. The point mass still uses rod and bob.
 TEST(GeometricInertias, UseTheFilesInertiaBesideARodAndABob) {
   const std::vector<GeometricInertia> inertias = Inertias(
-      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81,
-          "inertia": 0.0775})");
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0},
+          "inertia": {"value": 0.0775, "std_dev": 0}})");
   ASSERT_THAT(inertias, SizeIs(2));
   EXPECT_EQ(inertias[0].value, 0.0775);
   EXPECT_THAT(inertias[0].std_error.value_or(0), DoubleNear(0, 1e-15));

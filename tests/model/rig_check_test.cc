@@ -85,21 +85,28 @@ TEST(QuestionRig, AsksForLengthsAndGravityInOtherUnits) {
               ElementsAre(Is("rig_implausible", R"("gravity" is 1.62 m/s^2, which is not the Earth's)")));
 }
 
-TEST(QuestionRig, SaysWhatAGramAndAMillimetreWouldAdd) {
-  // By hand: dG/G for ±1 g in M and m, and ±1 mm in l: hypot(1e-3, 0.5e-3) / 0.4275 and 1 / 430.
-  const std::vector<Warning> warnings = QuestionRig(Textbook("0.380", "0.095", "0.43"));
-  EXPECT_THAT(warnings, ElementsAre(Is("rig_taken_as_exact",
-                                       "±1 g in each mass and ±1 mm in each length would add a "
-                                       "systematic error of 0.35 % to inertia")));
+TEST(QuestionRig, SaysWhatNominalValuesAdd) {
+  // By hand: dG/G for 1 g in M and m, 1 mm in l, and 0.015 m/s² in g: hypot(1e-3, 0.5e-3) / 0.4275, 1 / 430, 15 / 9810.
+  EXPECT_THAT(QuestionRig(Textbook("0.380", "0.095", "0.43")),
+              ElementsAre(Is("rig_errors_assumed", "scales ±1 g, a ruler ±1 mm and g ±0.015; all values of the rig "
+                                                   "together add a systematic error of 0.38 % to inertia")));
   // 1 mm of 420 mm is 0.24 % of g.
   EXPECT_THAT(QuestionRig(RigOf(R"({"length": 0.42})")),
-              ElementsAre(Is("rig_taken_as_exact", "would add a systematic error of 0.24 % to g")));
-  EXPECT_THAT(
-      QuestionRig(RigOf(R"({"stiffness": 0.02})")),
-      ElementsAre(Is("rig_taken_as_exact", "an error of 1 % in stiffness would add a systematic error of 1 %")));
+              ElementsAre(Is("rig_errors_assumed", "add a systematic error of 0.24 % to g")));
+  EXPECT_THAT(QuestionRig(RigOf(R"({"stiffness": 0.02})")),
+              ElementsAre(Is("rig_errors_assumed", "a stiffness ±1 %; all values of the rig together add a systematic "
+                                                   "error of 1 %")));
 }
 
-TEST(QuestionRig, DoesNotCallARigExactThatHasAnError) {
+TEST(QuestionRig, SaysWhichValuesAreNominalBesideStatedOnes) {
+  EXPECT_THAT(QuestionRig(RigOf(R"({"mass": {"value": 0.475, "std_dev": 0.0001}, "center_of_mass": 0.387,
+                                    "gravity": {"value": 9.81, "std_dev": 0}})")),
+              ElementsAre(Is("rig_errors_assumed", R"("center_of_mass" has no standard deviation)")));
+}
+
+TEST(QuestionRig, CallsARigExactOnlyIfItSaysSo) {
+  EXPECT_THAT(QuestionRig(RigOf(R"({"gravity_torque": {"value": 1.8, "std_dev": 0}})")),
+              ElementsAre(Is("rig_exact", "count as exact")));
   EXPECT_THAT(QuestionRig(RigOf(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.01}})")), IsEmpty());
   EXPECT_THAT(QuestionRig(Rig{{1.8, 0}, {}, {}}), IsEmpty());  // not from a file
 }

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -97,12 +100,13 @@ TEST(ParseRig, LeavesTheTorqueOfAStringPendulumOpenWithoutItsMass) {
 
 TEST(ParseRig, TakesTheBobOfAStringPendulumForAPointMass) {
   // By hand: 0.2 kg · 9.81 m/s² · 0.5 m, and 0.2 kg · 0.25 m².
-  const Rig rig = RigOf(R"({"length": 0.5, "gravity": 9.81, "mass": {"value": 0.2, "std_dev": 0.01}})");
+  const Rig rig = RigOf(R"({"length": {"value": 0.5, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0},
+                            "mass": {"value": 0.2, "std_dev": 0.01}})");
   EXPECT_TRUE(rig.gives_torque);
   EXPECT_NEAR(rig.gravity_torque.value, 0.981, 1e-12);
   EXPECT_NEAR(rig.gravity_torque.std_dev, 0.04905, 1e-12);
   EXPECT_NEAR(rig.inertia->value, 0.05, 1e-15);
-  const Rig without_gravity = RigOf(R"({"length": {"value": 0.5, "std_dev": 0.001}, "mass": 0.2})");
+  const Rig without_gravity = RigOf(R"({"length": {"value": 0.5, "std_dev": 0.001}, "mass": {"value": 0.2, "std_dev": 0}})");
   EXPECT_FALSE(without_gravity.gives_torque);
   EXPECT_FALSE(without_gravity.inertia);
   EXPECT_NEAR(without_gravity.known_inertia->value, 0.05, 1e-15);
@@ -133,9 +137,46 @@ TEST(ParseRig, KeepsTheFileForTheReport) {
 TEST(ParseRig, PropagatesOneErrorByItsDerivative) {
   // Computed by hand: G is proportional to l, and I to l^2.
   const Rig rig = RigOf(
-      R"({"bob_mass": 0.38, "rod_mass": 0.095, "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": 9.81})");
+      R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
+          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})");
   EXPECT_NEAR(rig.gravity_torque.std_dev, 1.80332325 * 0.001 / 0.43, 1e-12);
   EXPECT_NEAR(rig.inertia->std_dev, 2 * 0.0761171666666667 * 0.001 / 0.43, 1e-15);
+}
+
+// A bare number is nominal. By hand: 1 g in M and m, 1 mm in l, 0.015 m/s² in g.
+TEST(ParseRig, GivesNominalValuesTheErrorsOfTheirTools) {
+  const Rig rig = RigOf(kTextbookRig);
+  const std::vector<std::pair<std::string_view, double>> expected = {
+      {"bob_mass", 0.001 / 0.4275}, {"rod_mass", 0.0005 / 0.4275}, {"rod_length", 0.001 / 0.43}, {"gravity", 0.015 / 9.81}};
+  ASSERT_EQ(rig.errors.size(), expected.size());
+  double variance = 0;
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_EQ(rig.errors[k].key, expected[k].first);
+    EXPECT_TRUE(rig.errors[k].is_assumed);
+    EXPECT_NEAR(rig.errors[k].of_torque, expected[k].second, 1e-12);
+    variance += expected[k].second * expected[k].second;
+  }
+  EXPECT_NEAR(rig.gravity_torque.std_dev / rig.gravity_torque.value, std::sqrt(variance), 1e-12);
+  EXPECT_EQ(RigOf(R"({"gravity_torque": 1.8})").gravity_torque.std_dev, 0.018);  // 1 %
+}
+
+TEST(ParseRig, CountsOnlyAStatedZeroAsExact) {
+  const Rig exact = RigOf(R"({"gravity_torque": {"value": 1.8, "std_dev": 0}})");
+  EXPECT_EQ(exact.gravity_torque.std_dev, 0);
+  EXPECT_TRUE(exact.errors.empty());
+  const Rig stated = RigOf(R"({"gravity_torque": {"value": 1.8, "std_dev": 0.009}})");
+  ASSERT_EQ(stated.errors.size(), 1);
+  EXPECT_FALSE(stated.errors[0].is_assumed);
+  EXPECT_NEAR(stated.errors[0].of_torque, 0.005, 1e-15);
+}
+
+TEST(NominalStdDev, IsThatOfAToolForThingsOfThatSize) {
+  EXPECT_EQ(NominalStdDev(RigQuantity::kMass, 0.38), 0.001);
+  EXPECT_EQ(NominalStdDev(RigQuantity::kMass, 0.02), 0.0002);  // nobody weighs 20 g on kitchen scales
+  EXPECT_EQ(NominalStdDev(RigQuantity::kMass, 28), 0.028);
+  EXPECT_EQ(NominalStdDev(RigQuantity::kMass, 0), 0);  // a rod that weighs nothing
+  EXPECT_EQ(NominalStdDev(RigQuantity::kLength, 0.43), 0.001);
+  EXPECT_EQ(NominalStdDev(RigQuantity::kAcceleration, 9.81), 0.015);
 }
 
 TEST(ParseRig, MatchesMonteCarloForIndependentErrors) {

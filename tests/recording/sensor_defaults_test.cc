@@ -94,11 +94,11 @@ TEST(SensorErrorsOf, AssumesThePublishedSizesOfAKind) {
   EXPECT_DOUBLE_EQ(potentiometer.Of(kLag).std_dev, 0.012);
   EXPECT_DOUBLE_EQ(potentiometer.Of(kBacklash).std_dev, 0.05 * kDegree);
   EXPECT_DOUBLE_EQ(potentiometer.Of(kDrift).std_dev, 0.05 * kDegree);
-  EXPECT_EQ(potentiometer.Of(kGain).source, "assumed for a potentiometer");
+  EXPECT_EQ(potentiometer.Of(kGain).SourceText(), "assumed for a potentiometer");
   const SensorErrors encoder = Assumed(angle, "encoder");
   EXPECT_EQ(encoder.Of(kGain).std_dev, 0);
   EXPECT_DOUBLE_EQ(encoder.Of(kEccentricSine).std_dev, 0.1 * kDegree);
-  EXPECT_EQ(encoder.Of(kLag).source, "assumed for an encoder");
+  EXPECT_EQ(encoder.Of(kLag).SourceText(), "assumed for an encoder");
   const SensorErrors gyro = Assumed(Swinging("rad/s", Quantity::kRate));
   EXPECT_EQ(gyro.kind, "gyro");
   EXPECT_DOUBLE_EQ(gyro.Of(kGain).std_dev, 0.02);
@@ -137,7 +137,7 @@ TEST(SensorErrorsOf, HasNoErrorsOfAnIdealSensor) {
 TEST(SensorErrorsOf, TakesTheClockFromTheSourceOfTheTimes) {
   const auto clock = [](const std::string& head) { return Assumed(Read(head)).Of(kClock); };
   EXPECT_DOUBLE_EQ(clock("time_ms,adc_counts\n").std_dev, 0.003);
-  EXPECT_EQ(clock("time_ms,adc_counts\n").source, "assumed for a ceramic resonator");
+  EXPECT_EQ(clock("time_ms,adc_counts\n").SourceText(), "assumed for a ceramic resonator");
   EXPECT_DOUBLE_EQ(clock("time_us,angle_deg\n").std_dev, 0.003);
   EXPECT_DOUBLE_EQ(clock("time_s,adc_counts\n").std_dev, 0.003);
   EXPECT_DOUBLE_EQ(clock("time_s,angle_mrad\n").std_dev, 5e-5);
@@ -169,13 +169,13 @@ TEST(SensorErrorsOf, LeavesTheGainToTheErrorsOfACalibration) {
   const std::string covariance = ", \"covariance\": [[0.01, 0], [0, 1e-6]]";
   const SensorErrors errors = Assumed(Read(kCalibration + covariance + "}\ntime_ms,adc_counts\n"));
   EXPECT_EQ(errors.Of(kGain).std_dev, 0);
-  EXPECT_EQ(errors.Of(kGain).source, "calibration");
+  EXPECT_EQ(errors.Of(kGain).SourceText(), "calibration");
   EXPECT_DOUBLE_EQ(errors.Of(kEccentricSine).std_dev, 0.25 * kDegree);
   const std::string residual = ", \"residual_std_dev\": 0.1";
   const SensorErrors limited = Assumed(Read(kCalibration + covariance + residual + "}\ntime_ms,adc_counts\n"));
   EXPECT_NEAR(limited.Of(kEccentricSine).std_dev, 0.1 * kDegree, 1e-15);
   EXPECT_NEAR(limited.Of(kCubic).std_dev, 0.1 * kDegree, 1e-15);
-  EXPECT_EQ(limited.Of(kCubic).source, "calibration");
+  EXPECT_EQ(limited.Of(kCubic).SourceText(), "calibration");
   EXPECT_DOUBLE_EQ(limited.Of(kBacklash).std_dev, 0.05 * kDegree);
 }
 
@@ -185,15 +185,15 @@ TEST(SensorErrorsOf, PrefersWhatIsGivenToTheFileAndBothToTheDefaults) {
   const SensorErrors of_file = Assumed(recording);
   EXPECT_EQ(of_file.kind, "encoder");
   EXPECT_EQ(of_file.Of(kGain).std_dev, 0.004);
-  EXPECT_EQ(of_file.Of(kGain).source, "stated in the file");
-  EXPECT_EQ(of_file.Of(kBacklash).source, "assumed for an encoder");
+  EXPECT_EQ(of_file.Of(kGain).SourceText(), "stated in the file");
+  EXPECT_EQ(of_file.Of(kBacklash).SourceText(), "assumed for an encoder");
   const SensorErrors given = Assumed(recording, R"({"gain": 0, "nonlinearity": 0.001})");
   EXPECT_EQ(given.kind, "angle sensor");
   EXPECT_EQ(given.Of(kGain).std_dev, 0);
-  EXPECT_EQ(given.Of(kGain).source, "given by --sensor");
+  EXPECT_EQ(given.Of(kGain).SourceText(), "given by --sensor");
   EXPECT_EQ(given.Of(kEccentricCosine).std_dev, 0.001);
   EXPECT_EQ(given.Of(kLag).std_dev, 0.012);
-  EXPECT_EQ(given.Of(kLag).source, "assumed for an angle sensor");
+  EXPECT_EQ(given.Of(kLag).SourceText(), "assumed for an angle sensor");
 }
 
 // ---- The line # sensor ---------------------------------------------------------------------------------------------

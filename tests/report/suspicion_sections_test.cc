@@ -17,13 +17,8 @@ FitReport SuspectedFit() {
 }
 
 TEST(SuspicionSections, ListCausesWithSizeAndAdvice) {
-  SensorErrors sensor;
-  sensor.kind = "angle sensor";
-  sensor.Of(SensorEffect::kGain) = {0.01, "assumed for an angle sensor"};
-  const std::string text = ToText(SuspicionSections(SuspectedFit()), TextStyle{}) +
-                           ToText(SensorSections(SuspectedFit(), sensor), TextStyle{});
-  for (const char* part : {"What the residuals suggest", "gain", "1.00 ± 0.10 %", "friction law", "--models all",
-                           "assumed for an angle sensor"}) {
+  const std::string text = ToText(SuspicionSections(SuspectedFit()), TextStyle{});
+  for (const char* part : {"What the residuals suggest", "gain", "1.00 ± 0.10 %", "friction law", "--models all"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }
@@ -36,13 +31,6 @@ TEST(SuspicionSections, SayIfNothingIsSignificant) {
 }
 
 TEST(SuspicionSections, AreEmptyWithoutAResult) { EXPECT_TRUE(SuspicionSections(FitReport()).empty()); }
-
-TEST(SensorSections, AreEmptyWithoutAResultOrAKnownSensor) {
-  SensorErrors sensor;
-  EXPECT_TRUE(SensorSections(SuspectedFit(), sensor).empty());
-  sensor.kind = "encoder";
-  EXPECT_TRUE(SensorSections(FitReport(), sensor).empty());
-}
 
 TEST(SuspicionsJson, HasOneObjectForEachCause) {
   const auto json = SuspicionsJson(SuspectedFit());

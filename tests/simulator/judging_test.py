@@ -138,7 +138,7 @@ class SummaryTest(unittest.TestCase):
 
     def test_wrong_is_named_or_doubted_or_misnamed_or_silent(self):
         outcomes = [self.outcome(1), self.outcome(-6, ["gain"], codes=["lack_of_fit"]), self.outcome(7, ["lag"]),
-                    self.outcome(8), self.outcome(6, codes=["rig_taken_as_exact"]),
+                    self.outcome(8), self.outcome(6, codes=["rig_errors_assumed"]),
                     self.outcome(6, ["lag"], codes=["not_constant"])]
         summary = summarize(ROW, outcomes)
         self.assertEqual([summary[key] for key in ("wrong", "named_wrong", "doubted_wrong", "misnamed_wrong", "silent")],

@@ -20,7 +20,8 @@ from motion import Array, Motion, swing
 from pendulum import Body
 from sensors import Sensor
 
-RIG = json.loads((pathlib.Path(__file__).resolve().parents[2] / "datasets/textbook_rig.json").read_text(encoding="utf-8"))
+RIG = {key: entry["value"] for key, entry in
+       json.loads((pathlib.Path(__file__).resolve().parents[2] / "datasets/textbook_rig.json").read_text(encoding="utf-8")).items()}
 TOTAL_MASS = RIG["bob_mass"] + RIG["rod_mass"]
 GRAVITY_TORQUE = (RIG["bob_mass"] + RIG["rod_mass"] / 2) * RIG["gravity"] * RIG["rod_length"]  # MODEL.md eq. (1.2)
 POTENTIOMETER_TURN = math.radians(0.1985) * 1024

@@ -98,7 +98,7 @@ class AcceptedFiles(ReadTest):
     def test_a_spreadsheets_export(self):
         rows = table("Time (s);Angle [deg]\n", lambda t, a: f"{t};{a}".replace(".", ","))
         self.write("excel.csv", "\ufeffsep=;\r\n" + rows.replace("\n", "\r\n"))
-        self.assertEqual(self.assert_finds_the_truth("--data", "excel.csv"), ["rig_taken_as_exact"])
+        self.assertEqual(self.assert_finds_the_truth("--data", "excel.csv"), ["rig_errors_assumed"])
 
     def test_a_paste_of_a_serial_monitor(self):
         stamp = lambda t: f"14:03:{22 + t:06.3f} -> " if t < 38 else ""

@@ -210,10 +210,22 @@ class Units(RigTest):
             self.assertEqual(run.returncode, 4, run.stderr)
             self.assertRegex(run.stderr, question)
 
-    def test_a_rig_without_errors_is_called_exact(self):
+    def test_bare_numbers_have_the_errors_of_their_tools(self):
         result, text = self.fit("--data", "run.csv", "--details", rig=swing.RIG)
-        self.assertIn("rig_taken_as_exact", self.codes(result))
-        self.assertIn("±1 g in each mass and ±1 mm in each length would add", " ".join(text.split()))
+        self.assertIn("rig_errors_assumed", self.codes(result))
+        self.assertIn("assumed: scales ±1 g, a ruler ±1 mm and g ±0.015", " ".join(text.split()))
+        lines = {line["name"]: line for line in result["fits"][0]["budget"]}
+        self.assertLessEqual({"bob_mass", "rod_mass", "rod_length", "gravity"}, set(lines))
+        inertia = result["fits"][0]["parameters"]["inertia"]
+        # By hand: 1 mm of 430 mm.
+        self.assertAlmostEqual(lines["rod_length"]["parts"]["inertia"] / inertia["estimate"], 1 / 430, delta=1e-7)
+        self.assertEqual((lines["rod_length"]["type"], lines["rod_length"]["assumed"]), ("B", True))
+
+    def test_only_a_stated_zero_is_exact(self):
+        rig = {key: {"value": value, "std_dev": 0} for key, value in swing.RIG.items()}
+        result, _ = self.fit("--data", "run.csv", rig=rig)
+        self.assertIn("rig_exact", self.codes(result))
+        self.assertFalse([line for line in result["fits"][0]["budget"] if line["source"] == "rig"])
 
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ namespace pendulum {
 struct RigVerdict {
   double geometric = 0, fitted = 0;  ///< kg m²
   double excess = 0;                 ///< fitted / geometric - 1
-  std::optional<double> z;  ///< (fitted - geometric) / standard deviation of this difference; absent if the rig file
-                            ///< gives no standard deviations, or the fit no error.
+  std::optional<double> z;  ///< (fitted - geometric) / standard deviation of this difference; absent if the fit
+                            ///< gives no error.
   std::string finding;      ///< The verdict, or why there is none.
   std::string advice;       ///< What to do if they differ; otherwise empty.
   std::string brief;        ///< If they differ: what, by how much, why and what to do, in few words; otherwise empty.

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -35,11 +36,25 @@ struct RigKey {
 /// All keys of the rig file. The parser, its messages and the flags of the tools are made from this table.
 std::span<const RigKey> RigKeys();
 
-/// A measured constant of the rig: value and standard deviation in the same SI unit. A standard deviation of 0 means
-/// that none was given.
+/// The standard deviation of a value [SI] that is stated without one: a bare number is nominal.
+/// - A mass: 1 g, as of kitchen scales; a length: 1 mm, as of a ruler. At least 0.1 % and at most 1 % of the value,
+///   because large things are measured with coarser tools, and small ones with finer.
+/// - g: 0.015 m/s^2, from the equator (9.780) to the poles (9.832 m/s^2; WGS 84).
+/// - A torque, a stiffness or an inertia: 1 %, because it was computed from masses and lengths.
+double NominalStdDev(RigQuantity quantity, double value);
+
+/// A measured constant of the rig: value and standard deviation in the same SI unit; 0: exact.
 struct RigValue {
   double value = 0;
   double std_dev = 0;
+};
+
+/// What the error of one value of the rig file adds to the restoring torque.
+struct RigError {
+  std::string_view key;     ///< Of RigKeys.
+  double std_dev = 0;       ///< Of the value, in the key's unit, > 0.
+  bool is_assumed = false;  ///< Nobody stated it: NominalStdDev.
+  double of_torque = 0;     ///< Relative standard deviation of the restoring torque by this value alone.
 };
 
 /// Knowledge of the pendulum that does not come from its swing. It converts the ratios that a free swing determines to
@@ -57,9 +72,11 @@ struct Rig {
   std::optional<RigValue> gravity = {};        ///< g [m/s^2]
   std::optional<RigValue> length = {};         ///< Of a string or bifilar pendulum [m].
   std::optional<RigValue> mass = {};           ///< Of the whole pendulum [kg].
+  std::vector<RigError> errors = {};           ///< Of the values that give the torque; empty if it was set directly.
 };
 
-/// Reads a rig from JSON text, in SI units. Each value is a number or {"value", "std_dev"}. A rig is one of
+/// Reads a rig from JSON text, in SI units. Each value is {"value", "std_dev"}, where only a std_dev of 0 is exact, or
+/// a number, which has its NominalStdDev. A rig is one of
 ///   {"bob_mass", "rod_mass", "rod_length", "gravity"}   G = (M + m/2) g l (MODEL.md eq. (1.2)), and for comparison
 ///                                                       I_O = m l²/3 + M l² (eq. (1.3)) unless "inertia" is given
 ///   {"gravity_torque"}                                  G

@@ -16,8 +16,8 @@ namespace pendulum {
 std::string UnitOfMass(const nlohmann::ordered_json& source, const RigKey& key);
 
 /// Questions about a rig that do not need its swing. rig_implausible: a value that is odd in its SI unit, such as a bob
-/// of 380 kg; the sentence names the key, the likely unit and the number to write. rig_taken_as_exact: no value, g
-/// aside, has a standard deviation; the sentence says what ±1 g and ±1 mm would add to the results.
+/// of 380 kg; the sentence names the key, the likely unit and the number to write. rig_errors_assumed: values without a
+/// standard deviation, what was assumed, and what it adds to the results. rig_exact: all are stated to be exact.
 std::vector<Warning> QuestionRig(const Rig& rig);
 
 /// The ratio G/I [1/s^2] that the rig alone predicts: from its torque and its inertia, or g over the length of a string

@@ -17,12 +17,13 @@ namespace pendulum {
 inline constexpr std::string_view kRigOfValuesName = "the rig given by flags";
 
 /// The value and the standard deviation of an entry of Rig::source: a number or {"value", "std_dev"}, checked by
-/// ParseRig. The standard deviation is 0 if none is given.
+/// ParseRig. Without a stated standard deviation it is the NominalStdDev of the key.
 inline double ValueOfEntry(const nlohmann::ordered_json& entry) {
   return entry.is_object() ? entry.at("value").get<double>() : entry.get<double>();
 }
-inline double StdDevOfEntry(const nlohmann::ordered_json& entry) {
-  return entry.is_object() ? entry.value("std_dev", 0.0) : 0.0;
+inline bool HasStdDev(const nlohmann::ordered_json& entry) { return entry.is_object() && entry.contains("std_dev"); }
+inline double StdDevOfEntry(const RigKey& key, const nlohmann::ordered_json& entry) {
+  return HasStdDev(entry) ? entry.at("std_dev").get<double>() : NominalStdDev(key.quantity, ValueOfEntry(entry));
 }
 
 /// As ParseRig, with `values`, an object with keys of the rig, in the place of those of the text. A rig that needs g

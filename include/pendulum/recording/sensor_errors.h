@@ -25,8 +25,12 @@ std::string_view SensorEffectName(SensorEffect effect);
 /// the zero over the recording.
 struct EffectSize {
   double std_dev = 0;  ///< 0: exact, or not to be considered.
-  std::string source;  ///< "assumed for a potentiometer", "given by --sensor", "stated in the file", "calibration",
-                       ///< "stated with the clock"; empty if nothing is known of it.
+  std::string source;  ///< "given by --sensor", "stated in the file", "calibration", "stated with the clock"; if it is
+                       ///< assumed, of what: "a potentiometer", "times on an exact grid"; empty if nothing is known.
+  bool is_assumed = false;  ///< Nobody stated it.
+
+  /// "assumed for a potentiometer", "stated in the file".
+  std::string SourceText() const { return is_assumed ? "assumed for " + source : source; }
 };
 
 /// The plausible sizes of all effects on a recording.
@@ -54,6 +58,7 @@ enum class TimeSource {
   kUnknown,   ///< Not from a file.
   kSeconds,   ///< Times in s or another unit that does not tell the clock.
   kDevice,    ///< Times in ms or us: the counter of a microcontroller.
+  kGrid,      ///< Times on an exact grid, which a program may have counted instead of measuring them.
   kRate,      ///< No times, only a rate: perhaps a loop that waits for the nominal interval and also works.
   kComputer,  ///< Times of day, or stamps of a host.
   kMeasured,  ///< The file states the scale of the clock or its error (`# clock_scale`).

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "pendulum/fitting/fit/fit_report.h"
-#include "pendulum/recording/sensor_errors.h"
 #include "pendulum/report/section.h"
 
 namespace pendulum {
@@ -14,10 +13,6 @@ namespace pendulum {
 /// What the residuals of a fit suggest: each named cause with its size, its significance, whether the estimates allow
 /// for it, and what to measure. Empty for a fit without errors.
 Sections SuspicionSections(const FitReport& fit);
-
-/// What the sensor may do to the readings, with the source of each size. Empty for a fit without errors, or if nothing
-/// is known of the sensor.
-Sections SensorSections(const FitReport& fit, const SensorErrors& sensor);
 
 /// [{"name", "size", "std_error", "unit", "significance", "corrected"}, ...], the strongest first.
 nlohmann::ordered_json SuspicionsJson(const FitReport& fit);

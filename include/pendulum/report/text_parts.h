@@ -26,6 +26,9 @@ std::string Prose(std::string_view text);
 /// A text from outside, such as a file name, with "?" for each character that could control a terminal.
 std::string Printable(std::string_view text);
 
+/// A name of JSON in words: "friction law" for "friction_law".
+std::string InWords(std::string_view name);
+
 /// A conversion to another unit: numbers times `factor`.
 struct Conversion {
   std::string_view unit;

@@ -389,6 +389,7 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
   check.hidden_friction = (unseen.shift.cwiseAbs2() - unseen.std_dev.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
   check.named_friction = NamedFriction(check.suspicions, tests, sums, optimum);
   const Index count = effects.columns.cols();
+  for (const Effect& effect : effects.effects) check.causes.push_back(effect.cause);
   check.pull = (rows.deviation.asDiagonal() * jacobian).transpose() * rows.columns.rightCols(count);
   check.second_moment = MatrixXd::Zero(count, count);
   const std::vector<Index> budget = tests.BudgetColumns(check.suspicions);

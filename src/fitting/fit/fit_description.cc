@@ -165,6 +165,10 @@ void SetSystematicErrors(const FitProblem& problem, const std::vector<Systematic
       const double error = units[i] * std::sqrt(std::max(covariance.of_estimates(i, i), 0.0));
       report.parameters[static_cast<std::size_t>(i)].systematic.Add(covariance.kind, error);
     }
+    for (BudgetLine line : covariance.lines) {
+      line.parts = units.cwiseProduct(line.parts);
+      report.budget.push_back(std::move(line));
+    }
   }
   std::vector<Index> concerned;
   for (Index i = 0; i < size; ++i) {

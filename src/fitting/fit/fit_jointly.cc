@@ -58,6 +58,12 @@ void SetShared(JointFit& fit) {
   CopyShared(fit, first.covariance_names, first.covariance, whole.covariance_names, whole.covariance);
   CopyShared(fit, first.systematic_names, first.systematic_covariance, whole.systematic_names,
              whole.systematic_covariance);
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < first.parameters.size(); ++i) {
+    if (fit.IsShared(first.parameters[i].info.name)) rows.push_back(static_cast<Index>(i));
+  }
+  whole.budget = first.budget;
+  for (BudgetLine& line : whole.budget) line.parts = Eigen::VectorXd(line.parts(rows));
   std::ranges::copy_if(first.profiles, std::back_inserter(whole.profiles),
                        [&](const ProfileCurve& curve) { return fit.IsShared(curve.name); });
   std::ranges::copy_if(first.identifiability, std::back_inserter(whole.identifiability),

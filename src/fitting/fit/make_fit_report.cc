@@ -92,7 +92,8 @@ std::vector<SystematicCovariance> SystematicOf(const std::vector<SystematicCovar
                                                const std::vector<int>& at) {
   std::vector<SystematicCovariance> own;
   for (const SystematicCovariance& source : all) {
-    own.push_back({source.kind, source.of_estimates(at, at), source.of_ratios(at, at)});
+    own.push_back({source.kind, source.of_estimates(at, at), source.of_ratios(at, at), source.lines});
+    for (BudgetLine& line : own.back().lines) line.parts = Eigen::VectorXd(line.parts(at));
   }
   return own;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,16 @@ namespace {
 
 using Eigen::Index;
 
+/// A line of a source. Its own covariance is that of some of the source's C numbers, times a share of the variance.
+struct SourceLine {
+  std::string name, origin;
+  bool is_assumed = false;
+  std::optional<double> std_dev;
+  std::string unit = "1";
+  std::vector<Index> columns = {0};
+  double share = 1;
+};
+
 /// A source of systematic error, and its effect on a fit of P parameters.
 struct SystematicSource {
   ErrorSource kind;
@@ -25,7 +36,8 @@ struct SystematicSource {
   Eigen::VectorXd powers;      // P, for a common factor (C = 1): its power in each parameter; otherwise empty.
   Eigen::MatrixXd pull;        // P x C, derivatives of the P scores with respect to the source's C numbers.
   Eigen::MatrixXd covariance;  // C x C, of these numbers; for a common factor, relative.
-  std::size_t count = 1;       // number of recordings that share it
+  std::vector<SourceLine> lines;
+  std::size_t count = 1;  // number of recordings that share it
 };
 
 /// The power of the clock's scale in a parameter's estimate, if the readings do not depend on a clock.
@@ -119,18 +131,87 @@ Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SolvedFit&
   return follows;
 }
 
+/// The effect whose size a cause in the sensor has, and the unit of it.
+struct SizeOfCause {
+  const EffectSize& size;
+  std::string unit;
+};
+
+std::optional<SizeOfCause> SizeOf(Cause cause, const Recording& recording) {
+  const SensorErrors& sensor = recording.sensor_errors;
+  switch (cause) {
+    case Cause::kGain: return SizeOfCause{sensor.Of(SensorEffect::kGain), "1"};
+    case Cause::kNonlinearity: {
+      const EffectSize& cubic = sensor.Of(SensorEffect::kCubic);
+      const EffectSize& eccentric = sensor.Of(SensorEffect::kEccentricSine);
+      return SizeOfCause{cubic.std_dev > eccentric.std_dev ? cubic : eccentric, recording.value_unit()};
+    }
+    case Cause::kLag: return SizeOfCause{sensor.Of(SensorEffect::kLag), "s"};
+    case Cause::kBacklash: return SizeOfCause{sensor.Of(SensorEffect::kBacklash), recording.value_unit()};
+    case Cause::kDrift: return SizeOfCause{sensor.Of(SensorEffect::kDrift), recording.value_unit()};
+    default: return std::nullopt;
+  }
+}
+
+/// The lines of the sensor, one for each cause. budget: the effects that are in the budget.
+std::vector<SourceLine> SensorLines(const Recording& recording, const EffectCheck& effects,
+                                    const std::vector<Index>& budget) {
+  std::vector<SourceLine> lines;
+  for (std::size_t k = 0; k < budget.size(); ++k) {
+    const Cause cause = effects.causes[static_cast<std::size_t>(budget[k])];
+    const std::string name(CauseName(cause));
+    auto line = std::ranges::find(lines, name, &SourceLine::name);
+    if (line == lines.end()) {
+      const std::optional<SizeOfCause> of = SizeOf(cause, recording);
+      line = lines.insert(line,
+                          of && of->size.std_dev > 0
+                              ? SourceLine{name, of->size.SourceText(), of->size.is_assumed, of->size.std_dev, of->unit}
+                              : SourceLine{name, "suggested by the readings", false, std::nullopt, ""});
+      line->columns.clear();
+    }
+    line->columns.push_back(static_cast<Index>(k));
+  }
+  return lines;
+}
+
 /// The effects of the error budget as one source. Recordings of one kind of sensor share it.
-std::optional<SystematicSource> SensorSource(const SensorErrors& sensor, const EffectCheck& effects) {
+std::optional<SystematicSource> SensorSource(const Recording& recording, const EffectCheck& effects) {
   std::vector<Index> budget;
   for (Index k = 0; k < effects.second_moment.rows(); ++k) {
     if (effects.second_moment(k, k) > 0) budget.push_back(k);
   }
   if (budget.empty()) return std::nullopt;
   return SystematicSource{ErrorSource::kSensor,
-                          "sensor " + sensor.kind + " " + std::to_string(budget.size()),
+                          "sensor " + recording.sensor_errors.kind + " " + std::to_string(budget.size()),
                           {},
                           effects.pull(Eigen::all, budget),
-                          effects.second_moment(budget, budget)};
+                          effects.second_moment(budget, budget),
+                          SensorLines(recording, effects, budget)};
+}
+
+SourceLine CalibrationLine(const Calibration& calibration) {
+  SourceLine line{"calibration", "the covariance of its coefficients", false, std::nullopt, ""};
+  line.columns.resize(calibration.coefficients.size());
+  std::iota(line.columns.begin(), line.columns.end(), Index{0});
+  return line;
+}
+
+/// The lines of the rig: its values, whose errors are independent.
+std::vector<SourceLine> RigLines(const Rig& rig) {
+  const double torque = rig.gravity_torque.std_dev / rig.gravity_torque.value;
+  if (rig.errors.empty()) return {SourceLine{"gravity_torque", "stated", false, torque}};
+  std::vector<SourceLine> lines;
+  for (const RigError& error : rig.errors) {
+    const RigKey& key = *std::ranges::find(RigKeys(), error.key, &RigKey::name);
+    lines.push_back({std::string(error.key),
+                     error.is_assumed ? "assumed of a nominal value" : "stated in the rig",
+                     error.is_assumed,
+                     error.std_dev,
+                     std::string(key.unit),
+                     {0},
+                     std::pow(error.of_torque / torque, 2)});
+  }
+  return lines;
 }
 
 /// The rig's gravity torque is a common factor of inertia and friction. The clock's scale enters with the power of time
@@ -147,27 +228,32 @@ std::vector<SystematicSource> SourcesOfRun(const FittedRun& run, const EffectChe
   }
   std::vector<SystematicSource> sources;
   const auto add_scale = [&](ErrorSource kind, const std::string& identity, const Eigen::VectorXd& powers,
-                             double relative) {
+                             double relative, std::vector<SourceLine> lines) {
     if (!(relative > 0)) return;
-    sources.push_back(
-        {kind, identity, powers, ScoresByScale(powers, run), Eigen::MatrixXd::Constant(1, 1, relative * relative)});
+    sources.push_back({kind, identity, powers, ScoresByScale(powers, run),
+                       Eigen::MatrixXd::Constant(1, 1, relative * relative), std::move(lines)});
   };
   if (const Rig* rig = SiRig(run.options)) {
-    add_scale(ErrorSource::kRig, "rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value);
+    add_scale(ErrorSource::kRig, "rig", gravity, rig->gravity_torque.std_dev / rig->gravity_torque.value,
+              RigLines(*rig));
   }
   const SensorErrors& sensor = recording.sensor_errors;
   const double stated = recording.clock_scale_std_dev / recording.clock_scale;
-  const double clock_error = stated > 0 ? stated : sensor.Of(SensorEffect::kClock).std_dev;
+  const EffectSize of_clock =
+      stated > 0 ? EffectSize{stated, "stated with the clock"} : sensor.Of(SensorEffect::kClock);
+  const double clock_error = of_clock.std_dev;
+  const std::vector<SourceLine> clock_lines = {{"clock", of_clock.SourceText(), of_clock.is_assumed, clock_error}};
   const std::string clock = "clock " + NumberText(recording.clock_scale) + " " + NumberText(clock_error);
   const bool has_own_clock = recording.quantity == Quantity::kRate || recording.quantity == Quantity::kAcceleration;
   if (!has_own_clock) {
-    add_scale(ErrorSource::kClock, clock, time, clock_error);
+    add_scale(ErrorSource::kClock, clock, time, clock_error, clock_lines);
   } else if (clock_error > 0) {
     sources.push_back({ErrorSource::kClock,
                        clock,
                        {},
                        ScoresByClock(run),
-                       Eigen::MatrixXd::Constant(1, 1, clock_error * clock_error)});
+                       Eigen::MatrixXd::Constant(1, 1, clock_error * clock_error),
+                       clock_lines});
   }
   const std::optional<Calibration>& calibration = recording.calibration;
   if (calibration && calibration->covariance.size() > 0) {
@@ -175,9 +261,10 @@ std::vector<SystematicSource> SourcesOfRun(const FittedRun& run, const EffectChe
                        "calibration " + calibration->source.dump(),
                        {},
                        ScoresByCalibration(*calibration, run),
-                       calibration->covariance});
+                       calibration->covariance,
+                       {CalibrationLine(*calibration)}});
   }
-  if (std::optional<SystematicSource> of_sensor = SensorSource(sensor, effects)) {
+  if (std::optional<SystematicSource> of_sensor = SensorSource(recording, effects)) {
     sources.push_back(*std::move(of_sensor));
   }
   return sources;
@@ -237,7 +324,28 @@ SystematicCovariance CovarianceOfSource(const SystematicSource& source, const So
     const Eigen::Map<const Eigen::VectorXd> p(fit.solution.parameters.data(), size);
     ratios.col(0) -= source.powers.cwiseProduct(p);
   }
-  return {source.kind, moved * source.covariance * moved.transpose(), ratios * source.covariance * ratios.transpose()};
+  std::vector<BudgetLine> lines;
+  for (const SourceLine& line : source.lines) {
+    const auto of_line = moved(Eigen::all, line.columns);
+    const Eigen::VectorXd variance =
+        (of_line * source.covariance(line.columns, line.columns) * of_line.transpose()).diagonal();
+    lines.push_back({source.kind, line.name, line.origin, line.is_assumed, line.std_dev, line.unit,
+                     (line.share * variance).cwiseMax(0).cwiseSqrt()});
+  }
+  return {source.kind, moved * source.covariance * moved.transpose(), ratios * source.covariance * ratios.transpose(),
+          std::move(lines)};
+}
+
+/// Adds a line. Lines of several recordings that differ only in what they do to the estimates become one.
+void AddLine(BudgetLine line, std::vector<BudgetLine>& lines) {
+  const auto same = std::ranges::find_if(lines, [&](const BudgetLine& other) {
+    return other.name == line.name && other.origin == line.origin && other.std_dev == line.std_dev;
+  });
+  if (same == lines.end()) {
+    lines.push_back(std::move(line));
+  } else {
+    same->parts = (same->parts.cwiseAbs2() + line.parts.cwiseAbs2()).cwiseSqrt();
+  }
 }
 
 /// Adds a covariance to that of its kind.
@@ -249,6 +357,7 @@ void AddOfKind(SystematicCovariance more, std::vector<SystematicCovariance>& cov
   }
   known->of_estimates += more.of_estimates;
   known->of_ratios += more.of_ratios;
+  for (BudgetLine& line : more.lines) AddLine(std::move(line), known->lines);
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ struct Correction {
 /// What effects outside the fitted law do to a fit.
 struct EffectCheck {
   std::vector<Suspicion> suspicions;  ///< Named causes, the one with the strongest evidence first.
+  std::vector<Cause> causes;          ///< E, of the effects.
   Eigen::MatrixXd pull;               ///< P x E, derivatives of the problem's scores with respect to the E effects.
   Eigen::MatrixXd second_moment;      ///< E x E, covariance of their sizes plus the product of their means.
   /// P, the problem's units: how far the estimates would be off, as a standard deviation, if friction had other terms

@@ -120,7 +120,8 @@ struct FitReport {
   std::string std_error_method, interval_method;
   std::vector<ProfileCurve> profiles;  ///< In the order of the parameters; empty unless intervals are profiles.
   std::vector<std::string> systematic_names;
-  Eigen::MatrixXd systematic_covariance;         ///< K x K, K = systematic_names.size(), as covariance.
+  Eigen::MatrixXd systematic_covariance;  ///< K x K, K = systematic_names.size(), as covariance.
+  std::vector<BudgetLine> budget;         ///< Of rig, calibration, clock and sensor; parts in the units of report.
   std::vector<Identifiability> identifiability;  ///< Of unfixed parameters; may be empty if not converged.
   NoiseEstimate noise;
   FitStatistics statistics;

@@ -8,6 +8,7 @@
 #include "pendulum/base/try.h"
 #include "pendulum/recording/sensor_statement.h"
 #include "recording/readers/columns/to_angle.h"
+#include "recording/time_grid.h"
 
 namespace pendulum::csv {
 namespace {
@@ -16,11 +17,13 @@ double RateOf(const ReadColumns& columns, const ReadOptions& options) {
   return options.sample_rate_hz > 0 ? options.sample_rate_hz : columns.metadata.sample_rate_hz;
 }
 
+/// `columns`: before the times are changed.
 TimeSource TimeSourceOf(const ReadColumns& columns) {
   if (columns.metadata.Has("clock_scale") || columns.metadata.Has("clock_scale_std_dev")) return TimeSource::kMeasured;
   const Layout& layout = columns.layout;
   if (!layout.time) return columns.is_host_time ? TimeSource::kComputer : TimeSource::kRate;
   if (layout.is_clock || layout.is_from_first) return TimeSource::kComputer;
+  if (AreOnGrid(columns.samples.time)) return TimeSource::kGrid;
   const bool is_counter = layout.time->unit->suffix == "ms" || layout.time->unit->suffix == "us";
   return is_counter ? TimeSource::kDevice : TimeSource::kSeconds;
 }
@@ -103,6 +106,7 @@ Warning EmptyCells(const std::string& file, std::size_t rows, const std::string&
 Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   WarnOfClock(columns, options);
   WarnOfSensor(columns);
+  const TimeSource time_source = TimeSourceOf(columns);
   RETURN_IF_ERROR(SetTimes(columns, options));
   RawSamples& samples = columns.samples;
   const Metadata& metadata = columns.metadata;
@@ -115,7 +119,7 @@ Result<Recording> ToRecording(ReadColumns columns, const ReadOptions& options) {
   recording.clock_scale_std_dev =
       std::hypot(metadata.clock_scale_std_dev, metadata.clock_scale * samples.clock_std_dev);
   recording.rig_json = metadata.rig_json;
-  recording.time_source = TimeSourceOf(columns);
+  recording.time_source = time_source;
   recording.stated_sensor = metadata.sensor;
   SetValues(columns.layout, options, metadata, recording);
   MoveToMiddle(recording);

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pendulum/report/budget_sections.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "pendulum/base/format.h"
+#include "pendulum/fitting/fit/fit_warnings.h"
+#include "pendulum/report/json_parts.h"
+#include "pendulum/report/text_parts.h"
+
+namespace pendulum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kNoise = "noise";
+
+/// A line that stands for what the fit has of one kind in all parameters.
+BudgetLine LineOf(const FitReport& fit, ErrorSource source, std::string_view name, std::string origin,
+                  const auto& part_of) {
+  BudgetLine line{source, std::string(name), std::move(origin), false, std::nullopt, "", {}};
+  line.parts.resize(static_cast<Eigen::Index>(fit.parameters.size()));
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    line.parts[static_cast<Eigen::Index>(i)] = part_of(fit.parameters[i]);
+  }
+  return line;
+}
+
+std::string_view SourceName(const BudgetLine& line) {
+  return line.name == kNoise ? kNoise : ErrorSourceName(line.source);
+}
+
+std::string_view TypeName(const BudgetLine& line) {
+  return line.name == kNoise || EvaluationTypeOf(line.source) == EvaluationType::kA ? "A" : "B";
+}
+
+/// The parameters that a reader asks for first.
+std::vector<std::size_t> PhysicalOf(const FitReport& fit) {
+  const std::vector<ParameterInfo> physical = PhysicalParameters(fit.model);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    if (fit.parameters[i].std_error &&
+        std::ranges::find(physical, fit.parameters[i].info.name, &ParameterInfo::name) != physical.end()) {
+      places.push_back(i);
+    }
+  }
+  return places;
+}
+
+// ---- How to make an error smaller -----------------------------------------------------------------------------------
+
+struct Remedy {
+  std::string_view name;  // of a line
+  std::string_view text;
+};
+
+/// What replaces a size that was assumed or stated.
+constexpr std::array kRemedies = {
+    Remedy{"gain", "calibrate the sensor"},
+    Remedy{"nonlinearity", "calibrate the sensor at seven angles or more"},
+    Remedy{"lag", "measure the sensor's delay (--sensor)"},
+    Remedy{"backlash", "fix the sensor's coupling (--sensor)"},
+    Remedy{"drift", "let the sensor warm up (--sensor)"},
+    Remedy{"clock", "compare the recorder's clock with a watch (--sensor)"},
+    Remedy{"calibration", "calibrate at more angles"},
+    Remedy{"bob_mass", "weigh the bob on better scales"},
+    Remedy{"rod_mass", "weigh the rod on better scales"},
+    Remedy{"mass", "weigh the pendulum on better scales"},
+    Remedy{"rod_length", "measure the rod with calipers"},
+    Remedy{"length", "measure the length better"},
+    Remedy{"center_of_mass", "balance the pendulum on an edge"},
+    Remedy{"gravity", "look up the local g"},
+    Remedy{"gravity_torque", "weigh the pendulum held horizontal"},
+    Remedy{"stiffness", "measure the stiffness with known torques"}};
+
+/// The size of an error relative to an estimate: "± 0.35 %".
+std::string RelativeText(double error, double estimate) {
+  return "±" + std::string(kNoBreak) + NumberText(100 * error / std::abs(estimate), 2) + std::string(kNoBreak) + "%";
+}
+
+}  // namespace
+
+std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
+  std::vector<BudgetLine> lines;
+  if (fit.termination != Termination::kConverged) return lines;
+  lines.push_back(LineOf(fit, {}, kNoise, "the scatter of the readings",
+                         [](const ParameterEstimate& parameter) { return parameter.std_error.value_or(0); }));
+  for (BudgetLine line : fit.budget) {
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+      if (!fit.parameters[i].std_error) line.parts[static_cast<Eigen::Index>(i)] = 0;
+    }
+    lines.push_back(std::move(line));
+  }
+  constexpr std::array kOfReadings = {std::pair{ErrorSource::kInconstancy, "parts of the readings differ"},
+                                      std::pair{ErrorSource::kFrictionLaw, "the readings suggest other friction"}};
+  for (const auto& [source, origin] : kOfReadings) {
+    lines.push_back(LineOf(fit, source, ErrorSourceName(source), origin,
+                           [&](const ParameterEstimate& parameter) { return parameter.systematic.Of(source); }));
+  }
+  std::erase_if(lines, [](const BudgetLine& line) { return !(line.parts.array() > 0).any(); });
+  return lines;
+}
+
+Sections BudgetSections(const FitReport& fit) {
+  const std::vector<BudgetLine> lines = BudgetOf(fit);
+  if (lines.empty()) return {};
+  Table table{{{"± by"}, {"its size", true}, {"type"}}};
+  const std::vector<std::size_t> physical = PhysicalOf(fit);
+  for (const std::size_t i : physical) table.columns.push_back({std::string(fit.parameters[i].info.name), true});
+  table.columns.push_back({"where the size comes from"});
+  for (const BudgetLine& line : lines) {
+    std::vector<std::string> row = {InWords(line.name), line.std_dev ? PlainSizeText(*line.std_dev, line.unit) : "",
+                                    std::string(TypeName(line))};
+    for (const std::size_t i : physical) {
+      const double part = line.parts[static_cast<Eigen::Index>(i)];
+      row.push_back(part > 0 ? NumberText(part, 2) : "");
+    }
+    row.push_back(line.origin);
+    table.rows.push_back(std::move(row));
+  }
+  std::vector<std::string> total = {"total", "", ""};
+  for (const std::size_t i : physical) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    total.push_back(NumberText(*TotalStdError(parameter.std_error, parameter.systematic), 2));
+  }
+  total.emplace_back("");
+  table.rows.push_back(std::move(total));
+  Section section{"Error budget", "", {std::move(table)}};
+  return {section.AddText(
+      "Standard deviations, in the units of the parameters. Type A: from the statistics of readings; B: stated or "
+      "assumed. What the readings say of the sensor makes its lines depend on each other; the total allows for that.")};
+}
+
+Json BudgetJson(const FitReport& fit) {
+  Json budget = Json::array();
+  for (const BudgetLine& line : BudgetOf(fit)) {
+    Json parts = Json::object();
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+      const double part = line.parts[static_cast<Eigen::Index>(i)];
+      if (part > 0) parts[std::string(fit.parameters[i].info.name)] = part;
+    }
+    budget.push_back({{"name", line.name},
+                      {"source", SourceName(line)},
+                      {"type", TypeName(line)},
+                      {"origin", line.origin},
+                      {"assumed", line.is_assumed},
+                      {"std_dev", NumberOrNull(line.std_dev)},
+                      {"unit", line.std_dev ? Json(line.unit) : Json(nullptr)},
+                      {"parts", std::move(parts)}});
+  }
+  return budget;
+}
+
+std::string LargestErrorText(const FitReport& fit) {
+  constexpr double kSmaller = 1.25;  // times
+  double best = kSmaller;
+  std::string text;
+  for (const BudgetLine& line : BudgetOf(fit)) {
+    const auto* const remedy = std::ranges::find(kRemedies, line.name, &Remedy::name);
+    if (remedy == kRemedies.end()) continue;
+    for (const std::size_t i : PhysicalOf(fit)) {
+      const ParameterEstimate& parameter = fit.parameters[i];
+      const double total = *TotalStdError(parameter.std_error, parameter.systematic);
+      const double part = line.parts[static_cast<Eigen::Index>(i)];
+      const double left = std::sqrt(std::max(total * total - part * part, 0.0));
+      const double shown = std::max(left, *parameter.std_error);
+      if (!(total > best * shown)) continue;
+      best = total / shown;
+      text = "Largest error of " + std::string(parameter.info.name) + ": " + InWords(line.name) +
+             (line.is_assumed ? " (" + line.origin + ")" : "") + "; " + std::string(remedy->text) + ": " +
+             RelativeText(total, parameter.estimate) + " becomes " + RelativeText(shown, parameter.estimate) + ".";
+    }
+  }
+  return text;
+}
+
+}  // namespace pendulum
