@@ -38,7 +38,7 @@
 namespace pendulum {
 namespace {
 
-/// A chosen swing as input of the pipeline TakeSwing -> FitEachAlone -> (FitTogether) -> CompleteRecording.
+/// A chosen swing as input of the pipeline TakeSwing -> FitEachAlone -> AddFits -> CompleteRecording.
 struct Swing {
   std::string path;
   Recording recording;
@@ -73,16 +73,6 @@ Result<FittedRecording> SelectSwing(Recording recording, const FreeSwing& swing)
   ASSIGN_OR_RETURN(auto used, SelectWindow(std::move(recording), swing.from, swing.to));
   used.warnings.clear();
   return FittedRecording{std::move(used), swing, {}};
-}
-
-/// Fits every model to one swing. The samples move into the result.
-Result<FittedRecording> FitAlone(const IdentifyOptions& options, const FitOptions& fit_options, Swing& swing) {
-  if (options.fit.stop.stop_requested()) return FitStopped();
-  ASSIGN_OR_RETURN(auto fitted, options.closed_form_only
-                                    ? SelectSwing(std::move(swing.recording), swing.found)
-                                    : FitModels(std::move(swing.recording), swing.found, fit_options, options.models));
-  if (options.fit.stop.stop_requested()) return FitStopped();
-  return fitted;
 }
 
 /// Whether fit m is checked; `main` is the index of the main fit.
@@ -328,82 +318,83 @@ std::vector<std::string> LabelsOf(const std::vector<Swing>& swings) {
   return labels;
 }
 
-/// Fits each swing alone. Several swings are fitted at the same time, as recorded; whether they agree is judged with
-/// the constancy of each fit.
+/// Fits every model to each swing alone; the samples move into the result. Several swings are fitted at the same time,
+/// as recorded, and each fit is tested for constancy, because the test of their agreement needs it.
 Result<std::vector<FittedRecording>> FitEachAlone(const IdentifyOptions& options, const FitOptions& fit_options,
                                                   std::vector<Swing>& swings) {
-  if (swings.size() == 1) {
-    ASSIGN_OR_RETURN(auto only, FitAlone(options, fit_options, swings.front()));
-    std::vector<FittedRecording> recordings;
-    recordings.push_back(std::move(only));
-    return recordings;
-  }
+  const bool is_joint = swings.size() > 1;
   const std::vector<std::string> labels = LabelsOf(swings);
   std::vector<Result<FittedRecording>> fitted(swings.size());
   FitOptions each = fit_options;
-  each.threads = 1;
-  each.progress = nullptr;
-  each.search.may_correct = false;  // the joint fit has the readings as recorded
+  if (is_joint) {
+    each.threads = 1;
+    each.progress = nullptr;
+    each.search.may_correct = false;  // the joint fit has the readings as recorded
+  }
   const auto count = static_cast<int>(swings.size());
+  const auto report = [&](int done) {
+    if (is_joint) ReportProgress(fit_options.progress, "fitting each recording", done, count);
+  };
   std::atomic<int> done = 0;
-  ReportProgress(fit_options.progress, "fitting each recording", 0, count);
+  report(done);
   ParallelFor(count, fit_options.threads, [&](int i) {
+    if (options.fit.stop.stop_requested()) return;
     const auto k = static_cast<std::size_t>(i);
-    fitted[k] = FitAlone(options, each, swings[k]);
-    if (!fitted[k]) return;
+    Recording& recording = swings[k].recording;
+    fitted[k] = options.closed_form_only ? SelectSwing(std::move(recording), swings[k].found)
+                                         : FitModels(std::move(recording), swings[k].found, each, options.models);
+    if (!is_joint || !fitted[k]) return;
     fitted[k]->label = labels[k];
     for (const FitReport& fit : fitted[k]->fits) {
       const bool is_checked = options.checks != Checks::kNone;
       fitted[k]->constancy.push_back(TestFit(options, each, fitted[k]->used, fit, is_checked));
     }
-    ReportProgress(fit_options.progress, "fitting each recording", ++done, count);
+    report(++done);
   });
+  if (options.fit.stop.stop_requested()) return FitStopped();
   std::vector<FittedRecording> recordings;
   for (std::size_t k = 0; k < fitted.size(); ++k) {
-    if (!fitted[k] && options.fit.stop.stop_requested()) return FitStopped();
-    if (!fitted[k]) return ErrorOfRun(fitted[k].error(), swings[k].path, swings[k].release);
+    if (!fitted[k] && is_joint) return ErrorOfRun(fitted[k].error(), swings[k].path, swings[k].release);
+    if (!fitted[k]) return tl::unexpected(fitted[k].error());
     recordings.push_back(*std::move(fitted[k]));
   }
   return recordings;
 }
 
-/// What the fits of law m to each recording alone say. Amplitudes, shared parameters and homogeneity are not set.
-AcrossRecordings SeparateFits(const std::vector<FittedRecording>& recordings, std::size_t m) {
+/// What fit m says across the recordings.
+AcrossRecordings AcrossOf(const FittedRecordings& fitted, std::size_t m, const FitOptions& fit_options) {
   AcrossRecordings across;
-  for (const FittedRecording& recording : recordings) {
+  for (const FittedRecording& recording : fitted.recordings) {
     const FitReport& fit = recording.fits[m];
     const std::string status(TerminationName(fit.termination));
     across.separate.push_back(fit.termination == Termination::kConverged ? status : status + ": " + fit.reason);
     across.lacks_fit = across.lacks_fit || fit.HasWarning("lack_of_fit");
   }
+  if (fitted.recordings.size() > 1) {
+    across.shared = fitted.joint[m].shared;
+    across.amplitudes = fitted.homogeneity[m].amplitudes;
+    across.homogeneity = fitted.homogeneity[m];
+    return across;
+  }
+  const FittedRecording& only = fitted.recordings.front();
+  for (const ParameterInfo& parameter : PhysicalParameters(only.fits[m].model)) {
+    across.shared.emplace_back(parameter.name);
+  }
+  const FitOptions own = ForModel(fit_options, fitted.models[m], fitted.models).options;
+  across.amplitudes = {MeanAmplitude(only.used, only.fits[m], own)};
   return across;
 }
 
-/// Adds the fits to one recording: compares them, and tests whether their parameters are constant.
-void AddFitsOfOne(const IdentifyOptions& options, const FitOptions& fit_options, FittedRecordings& fitted,
-                  Identification& identification) {
-  if (fitted.models.size() > 1) {
-    ReportProgress(options.fit.progress, "comparing the laws");
-    identification.comparison = CompareModels(fitted, fit_options);
-  }
-  FittedRecording& only = fitted.recordings.front();
-  for (std::size_t m = 0; m < only.fits.size(); ++m) {
-    const FitReport& fit = only.fits[m];
-    AcrossRecordings& across = identification.across.emplace_back(SeparateFits(fitted.recordings, m));
-    for (const ParameterInfo& parameter : PhysicalParameters(fit.model)) across.shared.emplace_back(parameter.name);
-    const FitOptions own = ForModel(fit_options, fitted.models[m], fitted.models).options;
-    across.amplitudes = {MeanAmplitude(only.used, fit, own)};
-  }
-  identification.fits = std::move(only.fits);
-  const std::size_t main = identification.MainFit();
-  for (std::size_t m = 0; m < identification.fits.size(); ++m) {
+/// Tests whether the parameters of the fits to one recording are constant, and adds what follows to their errors.
+void TestFits(const IdentifyOptions& options, const FitOptions& fit_options, std::size_t main, FittedRecording& only,
+              std::vector<FitReport>& fits) {
+  for (std::size_t m = 0; m < fits.size(); ++m) {
     const bool is_checked = IsChecked(options.checks, m, main);
     if (is_checked) ReportProgress(options.fit.progress, "testing whether the parameters are constant");
-    FitReport& fit = identification.fits[m];
-    only.constancy.push_back(TestFit(options, fit_options, only.used, fit, is_checked));
-    const std::vector<RunAlone> alone = {{only.label, only.used, fit, fit_options, &only.constancy.back()}};
-    AddInconstancyError(alone, {}, fit);
-    AddFrictionLawError(alone, fit);
+    only.constancy.push_back(TestFit(options, fit_options, only.used, fits[m], is_checked));
+    const std::vector<RunAlone> alone = {{only.label, only.used, fits[m], fit_options, &only.constancy.back()}};
+    AddInconstancyError(alone, {}, fits[m]);
+    AddFrictionLawError(alone, fits[m]);
   }
 }
 
@@ -427,27 +418,27 @@ void AddOwnWarnings(const FitReport& alone, const FitReport& joint, IdentifiedRe
                                 .flags = why == nullptr ? std::vector<std::string>() : why->flags});
 }
 
-/// Fits every law to all recordings together, and compares the laws.
-void AddFitsOfSeveral(const IdentifyOptions& options, const FitOptions& fit_options, FittedRecordings& fitted,
-                      Identification& identification) {
-  fitted = FitTogether(std::move(fitted.recordings), fit_options, options.models, options.shared);
+/// Adds the fits: those to the only recording, or of every law to all recordings together. Compares the laws.
+void AddFits(const IdentifyOptions& options, const FitOptions& fit_options, FittedRecordings& fitted,
+             Identification& identification) {
+  const bool is_joint = identification.is_joint();
+  if (is_joint) fitted = FitTogether(std::move(fitted.recordings), fit_options, options.models, options.shared);
   if (fitted.models.size() > 1) {
     ReportProgress(fit_options.progress, "comparing the laws");
     identification.comparison = CompareModels(fitted, fit_options);
   }
   if (!fitted.HaveOneUnit()) identification.unit = "sigma";
+  std::vector<FittedRecording>& recordings = fitted.recordings;
   for (std::size_t m = 0; m < fitted.models.size(); ++m) {
-    identification.fits.push_back(fitted.joint[m].whole);
-    AcrossRecordings& across = identification.across.emplace_back(SeparateFits(fitted.recordings, m));
-    across.shared = fitted.joint[m].shared;
-    across.amplitudes = fitted.homogeneity[m].amplitudes;
-    across.homogeneity = fitted.homogeneity[m];
+    identification.across.push_back(AcrossOf(fitted, m, fit_options));
+    identification.fits.push_back(is_joint ? fitted.joint[m].whole : std::move(recordings.front().fits[m]));
   }
   const std::size_t main = identification.MainFit();
-  for (std::size_t k = 0; k < fitted.recordings.size(); ++k) {
+  if (!is_joint) return TestFits(options, fit_options, main, recordings.front(), identification.fits);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
     IdentifiedRecording& recording = identification.recordings[k];
     for (JointFit& fit : fitted.joint) recording.own_fits.push_back(std::move(fit.runs[k]));
-    AddOwnWarnings(fitted.recordings[k].fits[main], recording.own_fits[main], recording);
+    AddOwnWarnings(recordings[k].fits[main], recording.own_fits[main], recording);
   }
 }
 
@@ -465,11 +456,7 @@ Result<Identification> Identify(const IdentifyOptions& asked, std::vector<Swing>
   identification.unit = fitted.recordings.front().used.value_unit();
   for (Swing& swing : swings) identification.recordings.push_back(std::move(swing.known));
   WarnOfSpring(asked, options, identification);
-  if (is_joint) {
-    AddFitsOfSeveral(options, fit_options, fitted, identification);
-  } else if (!options.closed_form_only) {
-    AddFitsOfOne(options, fit_options, fitted, identification);
-  }
+  if (!options.closed_form_only) AddFits(options, fit_options, fitted, identification);
   std::vector<FittedRecording>& recordings = fitted.recordings;
   const bool is_undersampled =
       std::ranges::any_of(recordings, [](const FittedRecording& one) { return one.swing.undersampled; });

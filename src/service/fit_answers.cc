@@ -51,14 +51,16 @@ HttpResponse UnfittedAnswer(const ListedFit& fit) {
   return ProblemAnswer({StatusCode::kInternal, fit.reason});
 }
 
-/// The answer for a run that has no result, or none yet.
-std::optional<HttpResponse> WithoutResult(const KeptFit& kept) {
-  if (!kept.fit.exit_code) {
-    return ProblemResponse(
-        RetryLater(ProblemKind::kConflict, "the fit " + kept.fit.id + " waits for its turn in a batch"));
+/// A stored run with its result; otherwise the answer that says why there is none, or none yet.
+tl::expected<KeptFit, HttpResponse> FindResult(ServiceState& state, const std::string& id) {
+  auto kept = state.store->Find(id);
+  if (!kept) return tl::unexpected(ProblemAnswer(kept.error()));
+  if (!kept->fit.exit_code) {
+    return tl::unexpected(ProblemResponse(
+        RetryLater(ProblemKind::kConflict, "the fit " + kept->fit.id + " waits for its turn in a batch")));
   }
-  if (kept.result.is_null()) return UnfittedAnswer(kept.fit);
-  return std::nullopt;
+  if (kept->result.is_null()) return tl::unexpected(UnfittedAnswer(kept->fit));
+  return *std::move(kept);
 }
 
 HttpResponse StoppingAnswer() {
@@ -91,9 +93,8 @@ HttpResponse FitAndStore(ServiceState& state, const Call& call, FitRequest reque
 /// Passes the fit of a stored run and its name to a function. The fit is repeated unless it is remembered.
 template <typename Make>
 HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
-  auto kept = state.store->Find(call.id);
-  if (!kept) return ProblemAnswer(kept.error());
-  if (auto without = WithoutResult(*kept)) return *std::move(without);
+  auto kept = FindResult(state, call.id);
+  if (!kept) return std::move(kept).error();
   const auto options = OptionsOf(kept->order);
   if (!options) return ProblemAnswer(options.error());
   const auto run = state.fitter.FitOf(call.id, *options, std::move(kept->order.files), call.http.client_gone);
@@ -104,9 +105,8 @@ HttpResponse WithFit(ServiceState& state, const Call& call, const Make& make) {
 /// The answer for a fit that is not remembered: there is none, it has too many samples to be remembered, or it must be
 /// made again by another request.
 HttpResponse NotRemembered(ServiceState& state, const std::string& id) {
-  const auto kept = state.store->Find(id);
-  if (!kept) return ProblemAnswer(kept.error());
-  if (auto without = WithoutResult(*kept)) return *std::move(without);
+  auto kept = FindResult(state, id);
+  if (!kept) return std::move(kept).error();
   const std::int64_t limit = state.fitter.max_remembered();
   const auto samples = kept->result.at("recordings").at(0).at("used_samples").get<std::int64_t>();
   if (samples > limit) {
@@ -225,9 +225,8 @@ HttpResponse ListFits(ServiceState& state, const Call& call) {
 }
 
 HttpResponse GetFit(ServiceState& state, const Call& call) {
-  const auto kept = state.store->Find(call.id);
-  if (!kept) return ProblemAnswer(kept.error());
-  if (auto without = WithoutResult(*kept)) return *std::move(without);
+  auto kept = FindResult(state, call.id);
+  if (!kept) return std::move(kept).error();
   return JsonAnswer(kept->result);
 }
 

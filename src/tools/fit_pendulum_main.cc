@@ -2,6 +2,7 @@
 // Fits a pendulum's equation of motion to a recording of its free swing: flags, files and exit codes.
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -168,13 +169,6 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
   return outputs;
 }
 
-/// Fits with a line of progress.
-Result<std::vector<Result<Identification>>> FitWithProgress(FitPendulumOptions options, const Setup& setup) {
-  ProgressLine line(STDERR_FILENO);
-  options.fit.progress = line.Sink();
-  return FitAll(options, setup);
-}
-
 Result<int> Work(const Flags& flags) {
   ASSIGN_OR_RETURN(auto options, MakeFitPendulumOptions(flags));
   ASSIGN_OR_RETURN(const auto setup, ReadSetup(options));
@@ -184,7 +178,10 @@ Result<int> Work(const Flags& flags) {
   auto checked = CheckOutputs(options.Outputs(), setup.inputs);
   if (checked) checked = CheckNumberedOutputs(options, setup, setup.paths.size());
   if (!checked) return tl::unexpected(checked.error());
-  ASSIGN_OR_RETURN(const auto runs, FitWithProgress(options, setup));
+  std::optional<ProgressLine> line(STDERR_FILENO);
+  options.fit.progress = line->Sink();
+  ASSIGN_OR_RETURN(const auto runs, FitAll(options, setup));
+  line.reset();
   ASSIGN_OR_RETURN(const auto outputs, Render(options, runs));
   RETURN_IF_ERROR(WriteOutputs(outputs));
   int worst = 0;

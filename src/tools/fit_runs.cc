@@ -60,8 +60,8 @@ Result<void> CheckNumberedOutputs(const FitPendulumOptions& options, const Setup
 
 namespace {
 
-/// Fits all recordings together. Before the fit it checks the outputs, whose number is the number of recordings.
-Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup& setup) {
+/// Prepares all recordings of a joint fit, and checks the outputs, whose number is that of the chosen swings.
+Result<std::vector<PreparedRecording>> PrepareAll(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<PreparedRecording> recordings;
   std::size_t count = 0;
   for (const std::string& path : setup.paths) {
@@ -71,7 +71,7 @@ Result<Identification> FitJointly(const FitPendulumOptions& options, const Setup
     recordings.push_back(*std::move(one));
   }
   RETURN_IF_ERROR(CheckNumberedOutputs(options, setup, count));
-  return IdentifyJointly(options, std::move(recordings));
+  return recordings;
 }
 
 /// Whether an error is about the readings, not about a flag.
@@ -84,7 +84,8 @@ bool IsOfData(const Status& error) {
 Result<std::vector<Result<Identification>>> FitAll(const FitPendulumOptions& options, const Setup& setup) {
   std::vector<Result<Identification>> runs;
   if (options.IsJoint(setup.paths.size())) {
-    ASSIGN_OR_RETURN(auto joint, FitJointly(options, setup));
+    ASSIGN_OR_RETURN(auto recordings, PrepareAll(options, setup));
+    ASSIGN_OR_RETURN(auto joint, IdentifyJointly(options, std::move(recordings)));
     runs.emplace_back(std::move(joint));
     return runs;
   }

@@ -132,8 +132,8 @@ TEST(OptionsJson, DependsOnEveryOption) {
 // members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
 // the reader is that of the swing; `notes` are warnings; a rig chooses the gravity, and `is_spring` is set, only by
 // what `gravity` and the models say; `preview` receives what the reader sees;
-// users cannot set `start_values` and `sensor_start`, and `may_correct` follows from `models`; `shared` is for joint
-// identifications, of which a batch has none.
+// users cannot set `start_values`, `sensor_start` and `may_doubt_gravity`, and `may_correct` follows from `models`;
+// `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
   [[maybe_unused]] auto& [read, swing, models, fit, rig_chooses_gravity, checks, closed_form_only, rig_values, sensor,
@@ -144,7 +144,7 @@ TEST(OptionsJson, CoversEveryMember) {
   [[maybe_unused]] auto& [model, gravity, may_be_spring, start, rig, fixed, initial, bounds, priors, noise, interval,
                           seed, threads, progress, search, stop] = fit;
   [[maybe_unused]] auto& [start_values, sensor_start, vibration_period, max_trace_error, max_iterations, max_traces,
-                          may_correct] = search;
+                          may_correct, may_doubt_gravity] = search;
 }
 
 TEST(OptionsJson, IgnoresOptionsWithoutInfluence) {

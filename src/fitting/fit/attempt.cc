@@ -38,9 +38,9 @@ void UnwrapOffset(const FitProblem& problem, Solution& solution) {
 
 /// Solves a problem that is ready, at the tolerance expected to suffice, and measures the error of the trajectory at
 /// the solution. While the error is too large, solves again at a finer tolerance.
-Attempt SolveProblem(std::unique_ptr<FitProblem> ready, const FitOptions& options) {
+Attempt SolveProblem(FitProblem ready, const FitOptions& options) {
   Attempt attempt;
-  attempt.problem = std::move(ready);
+  attempt.problem = std::make_unique<FitProblem>(std::move(ready));
   const FitProblem& problem = *attempt.problem;
   attempt.cost = MakeTrajectoryCost(problem.model, problem.start.start, problem.data);
   TrajectoryCost& cost = *attempt.cost;
@@ -88,7 +88,7 @@ void KeepBetter(Attempt other, Attempt& best) {
 
 Result<Attempt> SolveFromOneStart(const Recording& recording, const FitOptions& options) {
   ASSIGN_OR_RETURN(FitProblem problem, MakeFitProblem(recording, options));
-  return SolveProblem(std::make_unique<FitProblem>(std::move(problem)), options);
+  return SolveProblem(std::move(problem), options);
 }
 
 AlternativeMinimum MinimumOf(const Attempt& attempt) {
@@ -103,18 +103,18 @@ bool IsBetter(const Attempt& a, const Attempt& b) {
 }
 
 Result<Attempt> MakeAttempt(const Recording& recording, const FitOptions& options) {
-  Result<Attempt> best = SolveFromOneStart(recording, options);
-  if (!best) return best;
+  ASSIGN_OR_RETURN(FitProblem problem, MakeFitProblem(recording, options));
+  Attempt best = SolveProblem(std::move(problem), options);
   FitOptions other = options;
-  const std::size_t starts = best->problem->sensor_starts;
+  const std::size_t starts = best.problem->sensor_starts;
   for (other.search.sensor_start = 1; other.search.sensor_start < starts; ++other.search.sensor_start) {
-    if (Result<Attempt> attempt = SolveFromOneStart(recording, other)) KeepBetter(*std::move(attempt), *best);
+    if (Result<Attempt> attempt = SolveFromOneStart(recording, other)) KeepBetter(*std::move(attempt), best);
   }
-  if (!best->solution.usable) return best;
-  if (std::optional<std::vector<double>> image = MirrorImage(*best->problem, best->solution.parameters)) {
-    auto problem = std::make_unique<FitProblem>(*best->problem);
-    problem->first_guess = *std::move(image);
-    KeepBetter(SolveProblem(std::move(problem), options), *best);
+  if (!best.solution.usable) return best;
+  if (std::optional<std::vector<double>> image = MirrorImage(*best.problem, best.solution.parameters)) {
+    FitProblem mirrored = *best.problem;
+    mirrored.first_guess = *std::move(image);
+    KeepBetter(SolveProblem(std::move(mirrored), options), best);
   }
   return best;
 }

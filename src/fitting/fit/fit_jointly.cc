@@ -45,10 +45,15 @@ const NoiseEstimate& RepresentativeNoise(const JointFit& fit) {
   return (is_autocorrelated == fit.runs.end() ? fit.runs.front() : *is_autocorrelated).noise;
 }
 
-/// Copies the results for the shared parameters from the first recording's report.
-void SetShared(JointFit& fit) {
+/// Sets the results of the whole: the statistics of all recordings, and those for the shared parameters, which are the
+/// same in each report.
+void SetWhole(JointFit& fit) {
   const FitReport& first = fit.runs.front();
   FitReport& whole = fit.whole;
+  std::vector<const FitReport*> all;
+  all.reserve(fit.runs.size());
+  for (const FitReport& run : fit.runs) all.push_back(&run);
+  whole.statistics = SumStatistics(all, fit.parameters);
   std::ranges::copy_if(first.parameters, std::back_inserter(whole.parameters),
                        [&](const ParameterEstimate& parameter) { return fit.IsShared(parameter.info.name); });
   for (ParameterEstimate& parameter : whole.parameters) parameter.closed_form.reset();
@@ -116,8 +121,14 @@ SeparateFits UseSeparateFits(JointProblem& joint, Solution& solution, Optimum& o
   return separate;
 }
 
-/// The result is meaningless if a stop is requested during the fit.
-Result<JointFit> SolveAndReport(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+bool IsStopped(std::span<const JointRun> runs) {
+  return std::ranges::any_of(runs, [](const JointRun& run) { return run.options.stop.stop_requested(); });
+}
+
+}  // namespace
+
+Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
+  if (IsStopped(runs)) return FitStopped();
   ASSIGN_OR_RETURN(JointProblem joint, MakeJointProblem(runs, shared));
   Solution solution = SolveJointly(joint);
   std::optional<Optimum> optimum = Linearize(joint.solve, *joint.cost, solution);
@@ -132,26 +143,11 @@ Result<JointFit> SolveAndReport(std::span<const JointRun> runs, const std::vecto
   fit.whole.termination = first.termination;
   fit.whole.reason = first.reason;
   fit.whole.solver = {solution.iterations, joint.cost->traces(), solution.message, {}};
-  if (!optimum) return fit;
-  fit.parameters = CountParameters(solved, *optimum);
-  std::vector<const FitReport*> all;
-  all.reserve(fit.runs.size());
-  for (const FitReport& run : fit.runs) all.push_back(&run);
-  fit.whole.statistics = SumStatistics(all, fit.parameters);
-  SetShared(fit);
-  return fit;
-}
-
-bool IsStopped(std::span<const JointRun> runs) {
-  return std::ranges::any_of(runs, [](const JointRun& run) { return run.options.stop.stop_requested(); });
-}
-
-}  // namespace
-
-Result<JointFit> FitJointly(std::span<const JointRun> runs, const std::vector<std::string>& shared) {
-  if (IsStopped(runs)) return FitStopped();
-  Result<JointFit> fit = SolveAndReport(runs, shared);
-  if (IsStopped(runs)) return FitStopped();
+  if (optimum) {
+    fit.parameters = CountParameters(solved, *optimum);
+    SetWhole(fit);
+  }
+  if (IsStopped(runs)) return FitStopped();  // a fit that was stopped is meaningless
   return fit;
 }
 

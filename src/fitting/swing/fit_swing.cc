@@ -389,10 +389,10 @@ bool MayUseHold(const FitOptions& options, const SwingState& state) {
 }
 
 /// Fits the swing with its hold, if that is as steady as the swing. recording: with the hold.
-void FitWithHold(Recording recording, const FitOptions& options, SwingState& state) {
+void FitWithHold(const Recording& recording, const FitOptions& options, SwingState& state) {
   const std::optional<FreeSwing> held = WithSteadyHold(recording, state.result.swing, state.result.fit.noise.sigma);
   if (!held) return;
-  Result<SwingFit> released = FitBetween(std::move(recording), *held, options);
+  Result<SwingFit> released = FitBetween(recording, *held, options);
   const bool is_released =
       released && released->fit.termination == Termination::kConverged && released->fit.start == StartKind::kRelease;
   if (!is_released || FindHoldDisagreement(released->used, released->fit, options)) return;
@@ -405,39 +405,20 @@ bool MayBeFaster(const FitOptions& options, const SwingState& state) {
   return state.IsLacking() && AssumedFrequency(state.result.used, state.swing.half_period, options);
 }
 
-/// After a stop request the result is meaningless.
-Result<SwingFit> FitWithOtherWindows(Recording recording, FreeSwing swing, const FitOptions& options) {
-  if (const auto why = ImplausiblePeriodReason(recording, swing, options)) {
-    return Error(StatusCode::kFailedPrecondition, *why);
-  }
-  if (swing.undersampled) return FitUndersampled(std::move(recording), std::move(swing), options);
-  KeepRequestedHold(options, swing);
-  std::optional<Recording> with_hold;
-  if (swing.begins.reason == WindowBegin::Reason::kUnsteadyHold) with_hold = recording;
-  Result<SwingFit> first = FitBetween(std::move(recording), swing, options);
-  if (!first) return first;
-  SwingState state{std::move(swing), *std::move(first), std::nullopt};
-  if (MayBeFaster(options, state)) {
-    if (std::optional<SwingFit> faster = FitFasterAlias(state.result, options)) return *std::move(faster);
-  }
-  ASSIGN_OR_RETURN(const auto records, ApplyRescues(options, state));
-  if (with_hold && MayUseHold(options, state)) FitWithHold(*std::move(with_hold), options, state);
-  if (state.is_pendulum) AddWarnings(options, state);
-  std::vector<AttemptRecord>& attempts = state.result.fit.solver.attempts;
-  attempts.insert(attempts.begin(), records.begin(), records.end());
-  return std::move(state.result);
-}
+// ---- Other kinds of motion or of readings ---------------------------------------------------------------------------
 
 /// Fits a linear oscillator with a linear restoring torque, and says so. If this does not help, the result stays.
 /// recording, swing: as they were before the first fit, which may have changed readings and window.
-void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options, Result<SwingFit>& result) {
-  const std::optional<std::string> unit = ReasonForUnit(result->used);
-  const std::optional<MotionModel> spring = WithGravity(result->fit.model, Gravity::kLinear);
+void FitAsSpring(Recording recording, const FreeSwing& swing, const FitOptions& options, SwingFit& result) {
+  if (result.linear_reason.empty()) return;
+  const std::optional<std::string> unit = ReasonForUnit(result.used);
+  const std::optional<MotionModel> spring = WithGravity(result.fit.model, Gravity::kLinear);
   if (!unit || !spring) return;
   FitOptions linear = options;
   linear.model = spring->name;
   linear.gravity = Gravity::kLinear;
-  Result<SwingFit> other = FitWithOtherWindows(std::move(recording), std::move(swing), linear);
+  linear.may_be_spring = false;
+  Result<SwingFit> other = FitSwing(std::move(recording), swing, linear);
   if (!other || other->fit.termination != Termination::kConverged) return;
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
@@ -445,11 +426,11 @@ void FitAsSpring(Recording recording, FreeSwing swing, const FitOptions& options
        .finding = "a restoring torque proportional to the angle is assumed, as of a spring or wire (law " +
                   linear.model + ", where G is the stiffness k)",
        .explanation =
-           "the reason: " + result->linear_reason + "; the readings are in " + result->used.unit + ": " + *unit,
+           "the reason: " + result.linear_reason + "; the readings are in " + result.used.unit + ": " + *unit,
        .advice = "for a pendulum, give --gravity sin and correct the unit (--unit, or in the column's name)",
        .flags = {"gravity", "unit"},
        .assumed = "the restoring torque of a spring (--gravity sin for a pendulum)"});
-  result = std::move(other);
+  result = *std::move(other);
 }
 
 /// Whether an accelerometer's readings decide that `other`, which contains gravity where `first` does not or the
@@ -471,12 +452,13 @@ bool IsContradicted(const FitReport& fit) {
 
 /// Fits an acceleration whose name says wrongly whether it contains gravity. If this does not help, the result stays.
 /// recording, swing: as for FitAsSpring.
-void FitWithOtherGravity(Recording recording, FreeSwing swing, const FitOptions& options, Result<SwingFit>& result) {
-  if (!IsContradicted(result->fit)) return;
+void FitWithOtherGravity(Recording recording, const FreeSwing& swing, FitOptions options, SwingFit& result) {
+  if (!IsContradicted(result.fit)) return;
   recording.shows_gravity = !recording.shows_gravity;
   const bool is_shown = recording.shows_gravity;
-  Result<SwingFit> other = FitWithOtherWindows(std::move(recording), std::move(swing), options);
-  if (!other || !IsBetterAcceleration(*other, *result)) return;
+  options.search.may_doubt_gravity = false;
+  Result<SwingFit> other = FitSwing(std::move(recording), swing, options);
+  if (!other || !IsBetterAcceleration(*other, result)) return;
   const std::string says = is_shown ? "that gravity was removed" : "nothing of gravity being removed";
   other->fit.warnings.insert(
       other->fit.warnings.begin(),
@@ -485,7 +467,21 @@ void FitWithOtherGravity(Recording recording, FreeSwing swing, const FitOptions&
                   std::string(is_shown ? "contains gravity" : "is one without gravity") + ", but its name says " + says,
        .explanation = "they were fitted so",
        .advice = std::string("correct the name (") + (is_shown ? "Acceleration" : "Linear Acceleration") + ")"});
-  result = std::move(other);
+  result = *std::move(other);
+}
+
+bool MayHaveOtherGravity(const Recording& recording, const FitOptions& options) {
+  return recording.quantity == Quantity::kAcceleration && options.search.may_doubt_gravity;
+}
+
+bool MayBeSpring(const Recording& recording, const FitOptions& options) {
+  return recording.quantity != Quantity::kAcceleration && options.may_be_spring && ReasonForUnit(recording);
+}
+
+/// Whether the recording as it was before the first fit may be needed.
+bool MayBeFittedAgain(const Recording& recording, const FreeSwing& swing, const FitOptions& options) {
+  return swing.begins.reason == WindowBegin::Reason::kUnsteadyHold || MayHaveOtherGravity(recording, options) ||
+         MayBeSpring(recording, options);
 }
 
 }  // namespace
@@ -500,17 +496,33 @@ Result<void> CheckSwing(const Recording& recording, const FreeSwing& swing, cons
 }
 
 Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions& options) {
+  if (const auto why = ImplausiblePeriodReason(recording, swing, options)) {
+    return Error(StatusCode::kFailedPrecondition, *why);
+  }
+  KeepRequestedHold(options, swing);
   std::optional<Recording> original;
-  const bool is_acceleration = recording.quantity == Quantity::kAcceleration;
-  if (is_acceleration || (options.may_be_spring && ReasonForUnit(recording))) original = recording;
-  Result<SwingFit> result = FitWithOtherWindows(std::move(recording), swing, options);
-  if (result && is_acceleration) {
-    FitWithOtherGravity(*std::move(original), std::move(swing), options, result);
-  } else if (result && original && !result->linear_reason.empty()) {
-    FitAsSpring(*std::move(original), std::move(swing), options, result);
+  if (MayBeFittedAgain(recording, swing, options)) original = recording;
+  ASSIGN_OR_RETURN(SwingFit first, swing.undersampled ? FitUndersampled(std::move(recording), swing, options)
+                                                      : FitBetween(std::move(recording), swing, options));
+  SwingState state{swing, std::move(first), std::nullopt};
+  SwingFit& result = state.result;
+  if (!swing.undersampled && MayBeFaster(options, state)) {
+    if (std::optional<SwingFit> faster = FitFasterAlias(result, options)) result = *std::move(faster);
+  }
+  if (!result.swing.undersampled) {
+    ASSIGN_OR_RETURN(const auto records, ApplyRescues(options, state));
+    if (original && MayUseHold(options, state)) FitWithHold(*original, options, state);
+    if (state.is_pendulum) AddWarnings(options, state);
+    std::vector<AttemptRecord>& attempts = result.fit.solver.attempts;
+    attempts.insert(attempts.begin(), records.begin(), records.end());
+  }
+  if (original && MayHaveOtherGravity(*original, options)) {
+    FitWithOtherGravity(*std::move(original), swing, options, result);
+  } else if (original && MayBeSpring(*original, options)) {
+    FitAsSpring(*std::move(original), swing, options, result);
   }
   if (options.stop.stop_requested()) return FitStopped();
-  return result;
+  return std::move(state.result);
 }
 
 }  // namespace pendulum

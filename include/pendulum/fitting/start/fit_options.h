@@ -40,6 +40,7 @@ struct SearchOptions {
   int max_traces = 3000;     ///< Trajectories per fit. A good recording needs tens; the limit ends failing fits.
   /// Whether the readings are corrected for suspected causes; not where laws are compared: they need the same readings.
   bool may_correct = true;
+  bool may_doubt_gravity = true;  ///< Whether the name of an acceleration may be wrong about gravity in it.
 };
 
 /// The user's options for a fit. Values by name are in SI with a rig (N m, kg m^2); without a rig, torques and inertia
