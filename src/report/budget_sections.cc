@@ -60,23 +60,22 @@ struct Remedy {
 };
 
 /// What replaces a size that was assumed or stated.
-constexpr std::array kRemedies = {
-    Remedy{"gain", "calibrate the sensor"},
-    Remedy{"nonlinearity", "calibrate the sensor at seven angles or more"},
-    Remedy{"lag", "measure the sensor's delay (--sensor)"},
-    Remedy{"backlash", "fix the sensor's coupling (--sensor)"},
-    Remedy{"drift", "let the sensor warm up (--sensor)"},
-    Remedy{"clock", "compare the recorder's clock with a watch (--sensor)"},
-    Remedy{"calibration", "calibrate at more angles"},
-    Remedy{"bob_mass", "weigh the bob on better scales"},
-    Remedy{"rod_mass", "weigh the rod on better scales"},
-    Remedy{"mass", "weigh the pendulum on better scales"},
-    Remedy{"rod_length", "measure the rod with calipers"},
-    Remedy{"length", "measure the length better"},
-    Remedy{"center_of_mass", "balance the pendulum on an edge"},
-    Remedy{"gravity", "look up the local g"},
-    Remedy{"gravity_torque", "weigh the pendulum held horizontal"},
-    Remedy{"stiffness", "measure the stiffness with known torques"}};
+constexpr std::array kRemedies = {Remedy{"gain", "calibrate the sensor"},
+                                  Remedy{"nonlinearity", "calibrate the sensor at seven angles or more"},
+                                  Remedy{"lag", "measure the sensor's delay (--sensor)"},
+                                  Remedy{"backlash", "fix the sensor's coupling (--sensor)"},
+                                  Remedy{"drift", "let the sensor warm up (--sensor)"},
+                                  Remedy{"clock", "compare the recorder's clock with a watch (--sensor)"},
+                                  Remedy{"calibration", "calibrate at more angles"},
+                                  Remedy{"bob_mass", "weigh the bob on better scales"},
+                                  Remedy{"rod_mass", "weigh the rod on better scales"},
+                                  Remedy{"mass", "weigh the pendulum on better scales"},
+                                  Remedy{"rod_length", "measure the rod with calipers"},
+                                  Remedy{"length", "measure the length better"},
+                                  Remedy{"center_of_mass", "balance the pendulum on an edge"},
+                                  Remedy{"gravity", "look up the local g"},
+                                  Remedy{"gravity_torque", "weigh the pendulum held horizontal"},
+                                  Remedy{"stiffness", "measure the stiffness with known torques"}};
 
 /// The size of an error relative to an estimate: "± 0.35 %".
 std::string RelativeText(double error, double estimate) {

@@ -213,8 +213,8 @@ TEST(ClosedFormRow, HasNoZIfTheRigIsExact) {
 }
 
 TEST(ClosedFormRow, ComparesAnInertiaGivenByTheRig) {
-  const CheckedRun checked =
-      CheckRodAndBob(R"({"gravity_torque": {"value": 1.8, "std_dev": 0}, "inertia": {"value": 0.08, "std_dev": 0.0002}})");
+  const CheckedRun checked = CheckRodAndBob(
+      R"({"gravity_torque": {"value": 1.8, "std_dev": 0}, "inertia": {"value": 0.08, "std_dev": 0.0002}})");
   EXPECT_EQ(checked.Row("inertia_geometry").closed_form, 0.08);
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, true);
   EXPECT_FALSE(checked.Has("inertia_point_mass"));

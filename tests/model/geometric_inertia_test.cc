@@ -87,10 +87,10 @@ TEST(GeometricInertias, ShareTheRigsErrorsWithTheFit) {
 
 // With a massless rod, inertia and torque are both proportional to the bob's mass, so an error of that mass cancels.
 TEST(GeometricInertias, HaveNoErrorOfDifferenceForACommonError) {
-  const std::vector<GeometricInertia> inertias = GeometricInertias(
-      ParsedRig(R"({"bob_mass": {"value": 0.4, "std_dev": 0.01}, "rod_mass": 0,
+  const std::vector<GeometricInertia> inertias =
+      GeometricInertias(ParsedRig(R"({"bob_mass": {"value": 0.4, "std_dev": 0.01}, "rod_mass": 0,
                     "rod_length": {"value": 0.5, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0}})"),
-      0.1);
+                        0.1);
   ASSERT_THAT(inertias, SizeIs(2));
   for (const GeometricInertia& inertia : inertias) {
     EXPECT_THAT(inertia.value, DoubleNear(0.1, 1e-15));

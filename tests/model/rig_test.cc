@@ -106,7 +106,8 @@ TEST(ParseRig, TakesTheBobOfAStringPendulumForAPointMass) {
   EXPECT_NEAR(rig.gravity_torque.value, 0.981, 1e-12);
   EXPECT_NEAR(rig.gravity_torque.std_dev, 0.04905, 1e-12);
   EXPECT_NEAR(rig.inertia->value, 0.05, 1e-15);
-  const Rig without_gravity = RigOf(R"({"length": {"value": 0.5, "std_dev": 0.001}, "mass": {"value": 0.2, "std_dev": 0}})");
+  const Rig without_gravity =
+      RigOf(R"({"length": {"value": 0.5, "std_dev": 0.001}, "mass": {"value": 0.2, "std_dev": 0}})");
   EXPECT_FALSE(without_gravity.gives_torque);
   EXPECT_FALSE(without_gravity.inertia);
   EXPECT_NEAR(without_gravity.known_inertia->value, 0.05, 1e-15);
@@ -146,8 +147,10 @@ TEST(ParseRig, PropagatesOneErrorByItsDerivative) {
 // A bare number is nominal. By hand: 1 g in M and m, 1 mm in l, 0.015 m/s² in g.
 TEST(ParseRig, GivesNominalValuesTheErrorsOfTheirTools) {
   const Rig rig = RigOf(kTextbookRig);
-  const std::vector<std::pair<std::string_view, double>> expected = {
-      {"bob_mass", 0.001 / 0.4275}, {"rod_mass", 0.0005 / 0.4275}, {"rod_length", 0.001 / 0.43}, {"gravity", 0.015 / 9.81}};
+  const std::vector<std::pair<std::string_view, double>> expected = {{"bob_mass", 0.001 / 0.4275},
+                                                                     {"rod_mass", 0.0005 / 0.4275},
+                                                                     {"rod_length", 0.001 / 0.43},
+                                                                     {"gravity", 0.015 / 9.81}};
   ASSERT_EQ(rig.errors.size(), expected.size());
   double variance = 0;
   for (std::size_t k = 0; k < expected.size(); ++k) {

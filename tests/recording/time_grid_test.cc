@@ -25,7 +25,7 @@ TEST(LastPlace, IsThatOfTheNumberWithMostDecimals) {
 
 TEST(AreOnGrid, AcceptsCountedTimes) {
   EXPECT_TRUE(AreOnGrid(Times([](double i) { return 0.01 * i; })));
-  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1e-6, i / 60); })));    // rounded
+  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1e-6, i / 60); })));       // rounded
   EXPECT_TRUE(AreOnGrid(Times([](double i) { return 10 * (i + (i > 700 ? 3 : 0)); })));  // three rows are missing
 }
 
