@@ -80,11 +80,10 @@ Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, 
   RETURN_IF_ERROR(CheckFolderOf(shard.store));
   const auto before = MetaOf(shard.store);
   if (before && !before->shard) {
-    return Error(StatusCode::kInvalidArgument, shard.store.string() +
-                                                   ": this is the store of a whole batch, which a shard would replace; "
-                                                   "name a file such as out/shard-" +
-                                                   std::to_string(options.shard ? options.shard->index : 0) +
-                                                   ".sqlite");
+    return ErrorAt(StatusCode::kInvalidArgument, shard.store.string(),
+                   "this is the store of a whole batch, which a shard would replace; "
+                   "name a file such as out/shard-" +
+                       std::to_string(options.shard ? options.shard->index : 0) + ".sqlite");
   }
   RETURN_IF_ERROR(CopyBeginning(shard, attempt.path()));
   auto counts = Attempt(source, shard, options, attempt.path());
@@ -113,7 +112,7 @@ std::string ShardList(const std::vector<std::int64_t>& shards) {
 Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int64_t count) {
   std::error_code unknown;
   if (!fs::is_directory(folder, unknown)) {
-    return Error(StatusCode::kNotFound, folder.string() + ": there is no such folder; check the path");
+    return ErrorAt(StatusCode::kNotFound, folder.string(), "there is no such folder; check the path");
   }
   std::vector<std::int64_t> missing;
   for (std::int64_t k = 0; k < count; ++k) {
@@ -300,8 +299,8 @@ Result<void> CheckIsNoShard(const fs::path& folder, std::int64_t count, const fs
   std::error_code unknown;
   for (std::int64_t k = 0; k < count; ++k) {
     if (!fs::equivalent(ShardPath(folder, k), store, unknown)) continue;
-    return Error(StatusCode::kInvalidArgument,
-                 store.string() + ": this is one of the shards; name another store to merge them into");
+    return ErrorAt(StatusCode::kInvalidArgument, store.string(),
+                   "this is one of the shards; name another store to merge them into");
   }
   return {};
 }
@@ -326,9 +325,9 @@ Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, con
   const auto missing = MissingShards(folder, count);
   if (!missing) return tl::unexpected(missing.error());
   if (!missing->empty()) {
-    return Error(StatusCode::kNotFound, folder.string() + ": of " + std::to_string(count) +
-                                            " shards these are missing: " + ShardList(*missing) +
-                                            "; run them and merge again");
+    return ErrorAt(StatusCode::kNotFound, folder.string(),
+                   "of " + std::to_string(count) + " shards these are missing: " + ShardList(*missing) +
+                       "; run them and merge again");
   }
   RETURN_IF_ERROR(CheckOneBatch(folder, count));
   RETURN_IF_ERROR(CheckSameFiles(folder, count));

@@ -135,7 +135,7 @@ Result<void> MigrateOrCopy(const std::string& name, SQLite::Database& database) 
   SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // SQLite removes it when it is closed
   const int step = SQLite::Backup(copy, database).executeStep();
   if (step != SQLITE_DONE) {  // SQLITE_BUSY or SQLITE_LOCKED; SQLiteCpp throws other errors
-    return Error(StatusCode::kTryAgain, name + ": another process writes to the store; try again later");
+    return ErrorAt(StatusCode::kTryAgain, name, "another process writes to the store; try again later");
   }
   database = std::move(copy);
   return migrate(database);
@@ -278,7 +278,7 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
     return {};
   }));
   if (!hash.empty()) return hash;
-  return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one per row");
+  return ErrorAt(StatusCode::kFailedPrecondition, source.name, "it names no recording; give one per row");
 }
 
 /// Marks the results whose rig or calibration is not the file that the manifest names now.
@@ -383,7 +383,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   const std::string name = path.string();
   std::error_code unknown;
   if (mode == Mode::kRead && !fs::exists(path, unknown)) {
-    return Error(StatusCode::kNotFound, name + ": there is no such store; check the path");
+    return ErrorAt(StatusCode::kNotFound, name, "there is no such store; check the path");
   }
   if (const auto checked = CheckFolderOf(path); mode != Mode::kRead && !checked) {
     return tl::unexpected(checked.error());

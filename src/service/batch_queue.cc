@@ -252,7 +252,7 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
     fitted = fitter_.Fit(*options, std::move(kept->order.files), unwanted);
   } else {
     fitted.outcome.exit_code = ExitCode(options.error().code);
-    fitted.outcome.reason = options.error().message;
+    fitted.outcome.reason = options.error().message();
   }
   {
     const std::scoped_lock lock(mutex_);
@@ -280,7 +280,7 @@ void BatchQueue::ReportReason(const FitStore::Waiting& run, const Status& why, s
   try {
     metrics_.CountRetry();
     if (!say_) return;
-    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again within " +
+    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message() + "; it is tried again within " +
          std::to_string(pause.count()) + " s");
   } catch (const std::exception&) {
     return;  // a message needs memory; the run continues without it

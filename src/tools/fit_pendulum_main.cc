@@ -179,7 +179,7 @@ Result<int> Work(const Flags& flags) {
   ASSIGN_OR_RETURN(auto options, MakeFitPendulumOptions(flags));
   ASSIGN_OR_RETURN(const auto setup, ReadSetup(options));
   if (const auto plots = options.terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
-    return Error(plots.error().code, "--terminal_plot: " + plots.error().message);
+    return Within("--terminal_plot", plots.error());
   }
   auto checked = CheckOutputs(options.Outputs(), setup.inputs);
   if (checked) checked = CheckNumberedOutputs(options, setup, setup.paths.size());

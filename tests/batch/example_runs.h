@@ -72,7 +72,7 @@ inline RunOutcome UnfittedOutcome() {
 inline Store StoreOf(const std::string& path, const Source& source) {
   Store store = Store::Open(path, Store::Mode::kWrite).value();
   const auto begun = store.Begin(source, std::nullopt, "{}");
-  EXPECT_TRUE(begun) << begun.error().message;
+  EXPECT_TRUE(begun) << begun.error().message();
   return store;
 }
 

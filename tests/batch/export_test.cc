@@ -85,7 +85,7 @@ std::vector<Json> LinesOf(Store& store) {
     text += piece;
     return {};
   });
-  EXPECT_TRUE(exported) << exported.error().message;
+  EXPECT_TRUE(exported) << exported.error().message();
   std::vector<Json> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(Json::parse(line));
@@ -98,7 +98,7 @@ std::string CsvOf(Store& store) {
     text += piece;
     return {};
   });
-  EXPECT_TRUE(exported) << exported.error().message;
+  EXPECT_TRUE(exported) << exported.error().message();
   return text;
 }
 
@@ -197,7 +197,7 @@ TEST_F(ExportTest, StopsIfTheSinkReturnsAnError) {
     });
     ASSERT_FALSE(exported);
     EXPECT_EQ(exported.error().code, StatusCode::kCannotWrite);
-    EXPECT_EQ(exported.error().message, "full");
+    EXPECT_EQ(exported.error().message(), "full");
     EXPECT_EQ(pieces, 1);
   }
 }
@@ -209,7 +209,7 @@ TEST_F(ExportTest, ReportsADamagedStore) {
   const auto exported = ExportJsonLines(store, [](std::string_view) -> Result<void> { return {}; });
   ASSERT_FALSE(exported);
   EXPECT_EQ(exported.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(exported.error().message, StartsWith(store.name() + ": the file is damaged ("));
+  EXPECT_THAT(exported.error().message(), StartsWith(store.name() + ": the file is damaged ("));
 }
 
 // ---- CSV -----------------------------------------------------------------------------------------------------------

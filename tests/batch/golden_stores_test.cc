@@ -181,9 +181,9 @@ TEST_F(GoldenStoresTest, AreUpgradedWithoutLoss) {
   for (int version = 1; version <= kVersions; ++version) {
     const fs::path path = Make(version, "golden.sqlite");
     auto store = Store::Open(path, Store::Mode::kWrite);
-    ASSERT_TRUE(store) << store.error().message;
+    ASSERT_TRUE(store) << store.error().message();
     const auto summary = Summarize(*store, {});
-    ASSERT_TRUE(summary) << summary.error().message;
+    ASSERT_TRUE(summary) << summary.error().message();
     EXPECT_EQ(summary->headline.fitted, 1);
     EXPECT_EQ(summary->headline.missing, 1);
     ExpectPresent(path, version);
@@ -216,7 +216,7 @@ TEST_F(GoldenStoresTest, AreRefusedAndUnchangedIfThereIsNoRoomForACopyEither) {
   if (child == 0) {
     FillDisk();
     const auto store = Store::Open(path, Store::Mode::kRead);
-    const bool is_named = !store && store.error().message.starts_with("cannot write " + path.string() + ": ");
+    const bool is_named = !store && store.error().message().starts_with("cannot write " + path.string() + ": ");
     ::_exit(is_named ? ExitCode(store.error().code) : EXIT_FAILURE);
   }
   int status = 0;

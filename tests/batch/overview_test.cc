@@ -26,7 +26,7 @@ class OverviewTest : public made_store::MadeStoreTest {};
 std::vector<FailureCount> FailuresOf(Store& store) {
   const auto overview = Overview(store);
   if (overview) return overview->failures;
-  ADD_FAILURE() << overview.error().message;
+  ADD_FAILURE() << overview.error().message();
   return {};
 }
 

@@ -42,7 +42,7 @@ class SummaryTest : public made_store::MadeStoreTest {
   static Json SummaryOf(Store& store, const SummaryOptions& options = {}) {
     auto summary = Summarize(store, options);
     if (summary) return ToJson(*summary);
-    ADD_FAILURE() << summary.error().message;
+    ADD_FAILURE() << summary.error().message();
     return nullptr;
   }
 };
@@ -518,7 +518,7 @@ TEST_F(SummaryTest, RefusesAnUnknownColumn) {
     const auto summary = Summarize(store, options);
     ASSERT_FALSE(summary);
     EXPECT_EQ(summary.error().code, StatusCode::kInvalidArgument);
-    EXPECT_EQ(summary.error().message, std::string(flag) + ": the manifest has no column 'room'; it has date, place");
+    EXPECT_EQ(summary.error().message(), std::string(flag) + ": the manifest has no column 'room'; it has date, place");
   }
 }
 
@@ -527,7 +527,7 @@ TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
   const auto summary = Summarize(store, {});
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(summary.error().message, (folder_ / "store.sqlite").string() + ": no run has a fit; refit some first");
+  EXPECT_EQ(summary.error().message(), (folder_ / "store.sqlite").string() + ": no run has a fit; refit some first");
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(StatusText, CountsRunsFitsAndReasons) {
   {
     Store store = StoreOfThree(path);
     const auto text = StatusText(store);
-    ASSERT_TRUE(text) << text.error().message;
+    ASSERT_TRUE(text) << text.error().message();
     EXPECT_THAT(*text, HasSubstr("    in the store                    3\n"));
     EXPECT_THAT(*text, HasSubstr("    not refitted yet                1\n"));
     EXPECT_THAT(*text, HasSubstr("    recording missing               0\n    refused                         2\n"));
