@@ -171,7 +171,8 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
   for (std::size_t i = 0; i < std::min(folder.paths.size(), kMaxMembers); ++i) {
     MemberSummary summary = SummarizeMember(folder, i, options);
     if (summary.fault && warnings.size() < kMaxWarnings)
-      warnings.push_back({.code = "unreadable_member", .finding = summary.fault->message()});
+      warnings.push_back(
+          {.code = "unreadable_member", .finding = summary.fault->sentence, .about = {.file = summary.fault->place}});
     if (summary.fault && !fault) fault = summary.fault;
     if (!summary.candidates.empty()) summaries.push_back(std::move(summary));
   }
