@@ -156,10 +156,10 @@ RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance p
     outcome.result = ToJson(*run);
   } else {
     outcome.exit_code = ExitCode(run.error().code);
-    outcome.reason = run.error().message();
+    outcome.reason = ReasonOf(run.error());
     const bool is_stopped = watch && watch->token().stop_requested() && run.error().code == StatusCode::kTryAgain;
     if (is_stopped) {
-      outcome.reason = entry.path + ": " + TooLong(limit->limit());
+      outcome.reason = {entry.path, TooLong(limit->limit())};
       outcome.provenance = GivenUp(std::move(outcome.provenance), limit->limit());
     }
   }
@@ -171,7 +171,7 @@ RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, cons
   const auto run = OptionsOf(entry, options.run);
   outcome.models = (run ? *run : options.run).models;
   outcome.exit_code = ExitCode(status.code);
-  outcome.reason = status.message();
+  outcome.reason = ReasonOf(status);
   return outcome;
 }
 

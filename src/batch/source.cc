@@ -57,14 +57,14 @@ bool IsSqlite(const fs::path& path) {
 }
 
 constexpr int kPackId = 0x50656e70;  // "Penp"
-constexpr int kPackVersion = 1;
+constexpr int kPackVersion = 2;
 
 constexpr const char* kPackSchema = R"(
 CREATE TABLE entries(  -- one row a run, as ManifestEntry
   position INTEGER PRIMARY KEY, id TEXT NOT NULL, path TEXT NOT NULL, rig TEXT NOT NULL, calibration TEXT NOT NULL,
   from_s REAL, to_s REAL, models TEXT NOT NULL, columns TEXT NOT NULL);
-CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the exit code and message of why there is none
-  path TEXT PRIMARY KEY, code INTEGER, message TEXT, bytes BLOB);
+CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the exit code and the sentence of why there is none
+  path TEXT PRIMARY KEY, code INTEGER, sentence TEXT, bytes BLOB);
 )";
 
 /// A packed file that is open for reading. SQLite serializes threads; the mutex protects the statement of Read.
@@ -73,7 +73,7 @@ class PackedFile {
   explicit PackedFile(const fs::path& path)
       : name_(path.string()), database_(sqlite::FileName(name_), SQLite::OPEN_READONLY), read_(database_, kRead) {}
 
-  static constexpr const char* kRead = "SELECT code, message, bytes FROM files WHERE path = ?";
+  static constexpr const char* kRead = "SELECT code, sentence, bytes FROM files WHERE path = ?";
 
   Result<void> Check() {
     const int id = database_.execAndGet("PRAGMA application_id").getInt();
@@ -103,7 +103,7 @@ class PackedFile {
     if (!read_.executeStep()) return ErrorAt(StatusCode::kNotFound, path, "there is no such file in " + name_);
     if (!read_.getColumn(0).isNull()) {
       const bool missing = read_.getColumn(0).getInt() == ExitCode(StatusCode::kNotFound);
-      return Error(missing ? StatusCode::kNotFound : StatusCode::kDataLoss, sqlite::Text(read_, 1));
+      return ErrorAt(missing ? StatusCode::kNotFound : StatusCode::kDataLoss, path, sqlite::Text(read_, 1));
     }
     return sqlite::Text(read_, 2);
   }
@@ -197,7 +197,7 @@ class Packer {
       add_file_.bind(4, bytes->data(), static_cast<int>(bytes->size()));
     } else {
       add_file_.bind(2, ExitCode(bytes.error().code));
-      add_file_.bind(3, bytes.error().message());
+      add_file_.bind(3, bytes.error().sentence);
     }
     add_file_.exec();
   }

@@ -63,7 +63,7 @@ inline RunOutcome UnfittedOutcome() {
   RunOutcome outcome;
   outcome.provenance = {"", "rig", "", "options", "0.1.0", "cpu"};
   outcome.exit_code = 3;
-  outcome.reason = "none.csv: there is no such file; check the path";
+  outcome.reason = {"none.csv", "there is no such file; check the path"};
   outcome.models = {"viscous", "coulomb"};
   return outcome;
 }

@@ -154,7 +154,7 @@ TEST_F(ExportTest, ContainsTheErrorOfARunWithoutAResult) {
   const auto lines = LinesOf(store);
   ASSERT_EQ(lines.size(), 1);
   EXPECT_TRUE(lines[0]["result"].is_null());
-  EXPECT_EQ(lines[0]["error"], Json({{"exit_code", 3}, {"message", UnfittedOutcome().reason}}));
+  EXPECT_EQ(lines[0]["error"], Json({{"exit_code", 3}, {"message", UnfittedOutcome().reason.text()}}));
 }
 
 TEST_F(ExportTest, SaysWhichFitsAreStale) {
@@ -254,7 +254,7 @@ TEST_F(ExportTest, WritesFailedRunsToo) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(rows[i].at("id"), "a");
     EXPECT_EQ(rows[i].at("status"), "failed");
-    EXPECT_EQ(rows[i].at("reason"), UnfittedOutcome().reason);
+    EXPECT_EQ(rows[i].at("reason"), UnfittedOutcome().reason.text());
     EXPECT_EQ(rows[i].at("inertia") + rows[i].at("inertia_unit") + rows[i].at("aicc"), "");
   }
 }

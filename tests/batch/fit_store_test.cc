@@ -253,7 +253,7 @@ TEST_F(FitStoreTest, FindsRunsByAPartOfTheirName) {
 TEST_F(FitStoreTest, FiltersByModelAndStatusOfTheSameFit) {
   Add(OrderOf("a"), OutcomeOf({FitOf("viscous", 1), FitOf("coulomb", 1, "not_converged")}));
   Add(OrderOf("b"), OutcomeOf({FitOf("drag", 1)}));
-  Add(OrderOf("c"), FailureOf("no swing", 5));
+  Add(OrderOf("c"), FailureOf({"", "no swing"}, 5));
   const auto listed = [&](const std::string& model, const std::string& status) {
     FitFilter filter;
     filter.model = model;
@@ -326,7 +326,7 @@ TEST_F(FitStoreTest, ProcessesABatchInOrder) {
   AddBatch("first", {"z", "a"});
   AddBatch("second", {"m"});
   EXPECT_THAT(Waiting(), ElementsAre("first/z", "first/a", "second/m"));
-  ASSERT_TRUE(Store().Put("z", FailureOf("z.csv: no swing", 5)));
+  ASSERT_TRUE(Store().Put("z", FailureOf({"z.csv", "no swing"}, 5)));
   ASSERT_TRUE(Store().Put("m", OutcomeOf({FitOf("viscous", 1)})));
   EXPECT_THAT(Waiting(), ElementsAre("first/a"));
   const auto runs = Store().RunsOf("first");

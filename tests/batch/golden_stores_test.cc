@@ -186,8 +186,22 @@ TEST_F(GoldenStoresTest, AreUpgradedWithoutLoss) {
     ASSERT_TRUE(summary) << summary.error().message();
     EXPECT_EQ(summary->headline.fitted, 1);
     EXPECT_EQ(summary->headline.missing, 1);
+    EXPECT_EQ(summary->headline.missing_runs.at(0).reason, "there is no such file; check the path");
     ExpectPresent(path, version);
   }
+}
+
+TEST_F(GoldenStoresTest, SeparateReasonsFromTheirPlaces) {
+  const fs::path path = Make(7, "golden.sqlite");
+  SQLite::Database(path.string(), SQLite::OPEN_READWRITE)
+      .exec(
+          "UPDATE runs SET stale = 'run.csv: the recording has become shorter' WHERE id = 'a';"
+          "UPDATE runs SET reason = 'none.csv:3:5: \"x\" is not a number' WHERE id = 'b';"
+          "UPDATE runs SET reason = 'rig.json: there is no such file' WHERE id = 'c'");
+  ASSERT_TRUE(Store::Open(path, Store::Mode::kWrite));
+  EXPECT_THAT(Rows(path, "SELECT id, place, sentence FROM runs ORDER BY run"),
+              testing::ElementsAre("a|run.csv|the recording has become shorter", "b|none.csv:3:5|\"x\" is not a number",
+                                   "c|NULL|NULL"));
 }
 
 TEST_F(GoldenStoresTest, AreReadFromAFullDisk) {

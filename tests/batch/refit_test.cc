@@ -119,7 +119,7 @@ TEST_F(RefitTest, RefitsOneRunAsInABatch) {
   ASSERT_TRUE(source);
   const RunOutcome outcome = RefitRun(*source, entry, coulomb_);
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.reason, "");
+  EXPECT_EQ(outcome.reason.text(), "");
   EXPECT_EQ(outcome.result.dump(), ValueOf("SELECT result FROM runs"));
   EXPECT_EQ(outcome.provenance.data_sha256, ValueOf("SELECT data_sha256 FROM runs"));
   entry.path = "nowhere.csv";

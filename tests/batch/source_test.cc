@@ -183,6 +183,7 @@ TEST_F(SourceTest, ReportsTheErrorOfAFileFromAPack) {
   for (const std::string path : {"runs/none.csv", "runs", "pipe.csv"}) {
     EXPECT_EQ(packed.read(path).error().code, source.read(path).error().code) << path;
     EXPECT_EQ(packed.read(path).error().message(), source.read(path).error().message()) << path;
+    EXPECT_EQ(packed.read(path).error().place, path);
   }
   EXPECT_EQ(packed.read("other.csv").error().code, StatusCode::kNotFound);
   EXPECT_EQ(packed.read("other.csv").error().message(), "other.csv: there is no such file in " + pack_.string());
@@ -306,12 +307,12 @@ TEST_F(SourceTest, RefusesOtherSqliteFilesWithATableOfFiles) {
 
 TEST_F(SourceTest, RefusesAPackOfALaterFormat) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
-  SQLite::Database(pack_.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 2");
+  SQLite::Database(pack_.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
   const auto newer = OpenSource(pack_);
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, StatusCode::kDataLoss);
   EXPECT_EQ(newer.error().message(),
-            pack_.string() + ": it was packed in format 2, but this program reads format 1; pack it again");
+            pack_.string() + ": it was packed in format 3, but this program reads format 2; pack it again");
 }
 
 TEST_F(SourceTest, RefusesATruncatedPack) {

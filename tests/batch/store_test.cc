@@ -87,7 +87,7 @@ std::int64_t NumberOf(Store& store, const std::string& query) { return store.dat
 
 TEST_F(StoreTest, HasTheTablesOfItsSchema) {
   Store store = Make({"a"});
-  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 7);
+  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 8);
   EXPECT_EQ(NumberOf(store, "PRAGMA application_id"), 0x50656e64);  // "Pend"
   EXPECT_THAT(TextsOf(store, "SELECT name FROM sqlite_schema WHERE sql LIKE '%--%' ORDER BY name"),
               ElementsAre("all_fits", "answers", "batches", "files", "fits", "meta", "options", "quantities",
@@ -262,7 +262,7 @@ TEST_F(StoreTest, ReplacesAllRowsOfARun) {
   ASSERT_TRUE(store.Put("a", unfitted) && store.Commit());
   EXPECT_THAT(
       TextsOf(store, "SELECT model || ' ' || status || ' ' || reason FROM all_fits WHERE id = 'a' AND stale IS NULL"),
-      ElementsAre("drag failed " + unfitted.reason));
+      ElementsAre("drag failed " + unfitted.reason.text()));
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM quantities WHERE model = 'drag'"), 0);
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM runs WHERE id = 'a' AND result IS NULL AND exit_code = 3"), 1);
   ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
