@@ -45,7 +45,7 @@ FitReport FailedFit(const std::string& model, const FitReport& like, const Statu
   FitReport fit;
   fit.model = *FindMotionModel(model);
   fit.termination = Termination::kFailed;
-  fit.reason = status.message;
+  fit.reason = status.sentence;  // the report is of this recording
   fit.start = like.start;
   fit.quantity = like.quantity;
   fit.reading_unit = like.reading_unit;

@@ -35,7 +35,7 @@ JointFit FitModel(const std::vector<FittedRecording>& recordings, std::size_t m,
   joint.reserve(recordings.size());
   for (const FittedRecording& recording : recordings) joint.push_back({recording.used, recording.fits[m], options});
   Result<JointFit> fit = FitJointly(joint, shared);
-  return fit ? *std::move(fit) : FailedFit(recordings, m, fit.error().message);
+  return fit ? *std::move(fit) : FailedFit(recordings, m, fit.error().message());
 }
 
 std::vector<RunAlone> FitsAlone(const std::vector<FittedRecording>& recordings, std::size_t m,

@@ -82,7 +82,7 @@ Parts::Parts(const Recording& used, const FitReport& fit, const FitOptions& opti
 PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& held) const {
   PartFit result;
   Result<Recording> part = SelectWindow(used_, from, to);
-  if (!part) return {{}, 0, {}, part.error().message};
+  if (!part) return {{}, 0, {}, part.error().message()};
   result.part = *std::move(part);
   result.first = std::ranges::lower_bound(used_.time, result.part.time[0]) - used_.time.begin();
   FitOptions options = options_;
@@ -104,7 +104,7 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
   }
   Result<FitReport> fit = FitRecording(result.part, options);
   if (!fit) {
-    result.reason = fit.error().message;
+    result.reason = fit.error().message();
     return result;
   }
   result.fit = *std::move(fit);

@@ -121,7 +121,7 @@ void Predict(const SyntheticOptions& run, PlanRow& row) {
   const Result<Recording> recording = SimulateRecording(run);
   row.std_errors.resize(run.parameters.size() + 3);
   if (!recording) {
-    row.reason = recording.error().message;
+    row.reason = recording.error().message();
     return;
   }
   row.std_errors = StdErrors(run, recording->time);

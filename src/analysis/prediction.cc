@@ -195,7 +195,7 @@ Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
   Sums sums;
   for (const Part& part : parts) {
     const Result<void> done = PredictPart(task, part, sums);
-    if (!done) return NoPrediction("a fit to the remaining readings cannot be made: " + done.error().message);
+    if (!done) return NoPrediction("a fit to the remaining readings cannot be made: " + done.error().message());
   }
   return PredictionOf(sums);
 }
@@ -209,7 +209,7 @@ Prediction PredictParts(const Task& task, const std::vector<Part>& parts) {
 /// `fit`.
 Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
-  if (!task) return NoPrediction(task.error().message);
+  if (!task) return NoPrediction(task.error().message());
   const double first = task->begin + task->period;
   const double length = (task->end - first) / kBlocks;
   std::vector<Part> parts;
@@ -224,7 +224,7 @@ Prediction CrossValidate(const Recording& used, const FitReport& fit, const FitO
 /// in cross-validation, where each block except the last lies between fitted samples.
 Prediction PredictForward(const Recording& used, const FitReport& fit, const FitOptions& options) {
   const Result<Task> task = MakeTask(used, fit, options);
-  if (!task) return NoPrediction(task.error().message);
+  if (!task) return NoPrediction(task.error().message());
   const double from = task->begin + kFirstPart * (task->end - task->begin);
   return PredictParts(*task, {PartBetween(*task, from, task->end)});
 }

@@ -20,10 +20,6 @@ tl::unexpected<Status> Unreadable(const std::string& name) {
 
 }  // namespace
 
-tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence) {
-  return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
-
 InputFile::InputFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
 InputFile::InputFile(InputFile&& other) noexcept
@@ -39,7 +35,7 @@ Result<InputFile> InputFile::Open(const std::filesystem::path& path, std::string
   std::error_code unknown;
   const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
   if (type == std::filesystem::file_type::not_found) {
-    return Error(StatusCode::kNotFound, path.string() + ": there is no such file; check the path");
+    return ErrorAt(StatusCode::kNotFound, path.string(), "there is no such file; check the path");
   }
   if (type == std::filesystem::file_type::directory) {
     return Fault(path.string(), "this is a directory; name a " + std::string(kind) + " file in it");

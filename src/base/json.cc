@@ -56,9 +56,9 @@ tl::unexpected<Status> NotJson(std::string_view text, const std::string& name, c
   const std::size_t dash = what.find(" - ");
   std::string_view reason = dash == std::string_view::npos ? "syntax error" : what.substr(dash + 3);
   reason = reason.substr(0, reason.find("; last read"));
-  return Error(StatusCode::kDataLoss, name + ":" + std::to_string(std::ranges::count(before, '\n') + 1) + ":" +
-                                          std::to_string(before.size() - line_begin + 1) + ": this is not JSON (" +
-                                          std::string(reason) + "); correct it here");
+  return Fault(name + ":" + std::to_string(std::ranges::count(before, '\n') + 1) + ":" +
+                   std::to_string(before.size() - line_begin + 1),
+               "this is not JSON (" + std::string(reason) + "); correct it here");
 }
 
 }  // namespace

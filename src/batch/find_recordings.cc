@@ -127,7 +127,7 @@ Result<FoundRecordings> FindRecordings(const std::string& pattern) {
   std::ranges::sort(paths);
   paths.erase(std::unique(paths.begin(), paths.end()), paths.end());  // several ** may match the same file
   if (!paths.empty()) return found;
-  return Error(StatusCode::kNotFound, pattern + ": " + what + "; check the path");
+  return ErrorAt(StatusCode::kNotFound, pattern, what + "; check the path");
 }
 
 }  // namespace pendulum

@@ -220,7 +220,7 @@ class Header {
       if (known == kColumns.end()) {
         columns[names_[i]] = row.fields[i];
       } else if (const auto set = SetField(*known, row.fields[i], entry); !set) {
-        return Fault(where + ": column " + names_[i], set.error().message);
+        return Fault(where + ": column " + names_[i], set.error().message());
       }
     }
     if (entry.id.empty()) entry.id = entry.path;

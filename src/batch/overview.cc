@@ -40,13 +40,6 @@ SELECT recommended, count(*) FROM runs
   return counts;
 }
 
-/// A reason without the name of the recording and its line.
-std::string ReasonOf(std::string reason, const std::string& path) {
-  if (reason.starts_with(path)) reason.erase(0, path.size());
-  const std::size_t begin = reason.find_first_not_of(":0123456789 ");
-  return reason.erase(0, std::min(begin, reason.size()));
-}
-
 /// A reason with # in place of each number, because numbers differ between runs.
 std::string KindOf(const std::string& reason) {
   std::string kind;
@@ -63,16 +56,17 @@ std::string KindOf(const std::string& reason) {
 /// they are the same in all its failures.
 std::vector<FailureCount> CountFailures(SQLite::Database& database) {
   SQLite::Statement rows(database, R"sql(
-SELECT fits.status, exit_code, fits.reason, path, fits.model, id FROM fits JOIN runs USING(run)
-  WHERE fits.status <> 'converged' AND )sql" +
+SELECT fits.status, exit_code, iif()sql" +
+                                       kIsOfRecording + R"sql(, sentence, fits.reason), fits.model, id
+  FROM fits JOIN runs USING(run) WHERE fits.status <> 'converged' AND )sql" +
                                        kIsLiveFit + " ORDER BY position, id");
   std::map<std::tuple<std::string, int, std::string>, FailureCount> kinds;
   while (rows.executeStep()) {
-    const std::string why = ReasonOf(sqlite::Text(rows, 2), sqlite::Text(rows, 3)), kind = KindOf(why);
+    const std::string why = sqlite::Text(rows, 2), kind = KindOf(why);
     FailureCount& failures = kinds[{sqlite::Text(rows, 0), rows.getColumn(1).getInt(), kind}];
     if (failures.fits++ == 0) failures.reason = why;
     if (failures.reason != why) failures.reason = kind;
-    const std::string law = sqlite::Text(rows, 4), id = sqlite::Text(rows, 5);
+    const std::string law = sqlite::Text(rows, 3), id = sqlite::Text(rows, 4);
     if (std::ranges::find(failures.laws, law) == failures.laws.end()) failures.laws.push_back(law);
     const bool known = std::ranges::find(failures.examples, id) != failures.examples.end();
     if (!known && failures.examples.size() < kMaxExamples) failures.examples.push_back(id);

@@ -23,10 +23,10 @@ Result<Prunable> FindPrunable(Store& store) {
     // An interrupted refit has marked results that it has not reached yet, and has not recognized all renamed runs.
     const bool is_empty = found.stale_runs.empty() && found.unlisted_runs.empty() && found.models.empty();
     if (meta.is_interrupted() && !is_empty) {
-      return Error(StatusCode::kFailedPrecondition,
-                   store.name() + ": " + std::string(kNotComplete) +
-                       ", so results that it has not replaced yet would be lost. Finish the refit first: run "
-                       "refit_pendulums with the same arguments again");
+      return ErrorAt(StatusCode::kFailedPrecondition, store.name(),
+                     std::string(kNotComplete) +
+                         ", so results that it has not replaced yet would be lost. Finish the refit first: run "
+                         "refit_pendulums with the same arguments again");
     }
     return found;
   });

@@ -57,7 +57,7 @@ Result<IdentifyOptions> OptionsOf(const ManifestEntry& entry, const IdentifyOpti
   if (entry.models.empty()) return options;
   const auto models = FindMotionModels(entry.models, batch.fit.gravity);
   if (!models)
-    return Error(StatusCode::kInvalidArgument, entry.path + ": models in the manifest: " + models.error().message);
+    return ErrorAt(StatusCode::kInvalidArgument, entry.path, "models in the manifest: " + models.error().message());
   options.models.clear();
   for (const MotionModel& model : *models) options.models.emplace_back(model.name);
   options.fit.model = options.models.front();
@@ -76,7 +76,7 @@ RunInputs ReadInputs(const Source& source, const ManifestEntry& entry, const Ref
 }
 
 /// Stands for the hash of an unreadable file. While the error stays the same, the run is not tried again.
-std::string Unreadable(const Status& status) { return "unreadable: " + status.message; }
+std::string Unreadable(const Status& status) { return "unreadable: " + status.message(); }
 
 Result<std::string> HashOf(const Result<std::string>& bytes) {
   if (!bytes) return Unreadable(bytes.error());
@@ -156,10 +156,10 @@ RunOutcome OutcomeOf(const ManifestEntry& entry, RunInputs& inputs, Provenance p
     outcome.result = ToJson(*run);
   } else {
     outcome.exit_code = ExitCode(run.error().code);
-    outcome.reason = run.error().message;
+    outcome.reason = ReasonOf(run.error());
     const bool is_stopped = watch && watch->token().stop_requested() && run.error().code == StatusCode::kTryAgain;
     if (is_stopped) {
-      outcome.reason = entry.path + ": " + TooLong(limit->limit());
+      outcome.reason = {entry.path, TooLong(limit->limit())};
       outcome.provenance = GivenUp(std::move(outcome.provenance), limit->limit());
     }
   }
@@ -171,7 +171,7 @@ RunOutcome Failure(const ManifestEntry& entry, const RefitOptions& options, cons
   const auto run = OptionsOf(entry, options.run);
   outcome.models = (run ? *run : options.run).models;
   outcome.exit_code = ExitCode(status.code);
-  outcome.reason = status.message;
+  outcome.reason = ReasonOf(status);
   return outcome;
 }
 

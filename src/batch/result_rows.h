@@ -159,7 +159,7 @@ inline std::vector<FitRow> FitRows(const RunOutcome& outcome) {
       rows.emplace_back();
       rows.back().model = model;
       rows.back().status = "failed";
-      rows.back().reason = outcome.reason;
+      rows.back().reason = outcome.reason.text();
     }
     return rows;
   }

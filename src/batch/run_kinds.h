@@ -36,10 +36,11 @@ inline const std::string kIsLiveFit = IsLiveFit("requests");
 /// The fit of the recommended law, or of the only law, converged, and the run is live.
 inline const std::string kIsFitted = "(exit_code = 0 AND " + kIsLive + ")";
 
-/// There is no such recording. A run whose reason begins with its own path is about the recording; otherwise it is
-/// about the rig or the calibration.
-inline const std::string kIsMissing =
-    "(exit_code = 3 AND substr(coalesce(reason, ''), 1, length(path) + 1) = path || ':')";
+/// There is no such recording. Otherwise there is no such rig or calibration.
+inline const std::string kIsMissing = "(exit_code = 3 AND place IS path)";
+
+/// The reason of a run is about its recording or a place in it.
+inline const std::string kIsOfRecording = "(place = path OR substr(place, 1, length(path) + 1) = path || ':')";
 
 /// The run has no result, because there is no such recording, rig or calibration.
 inline const std::string kLacksFile = "(exit_code = 3 AND " + kIsLive + ")";

@@ -80,11 +80,10 @@ Result<RefitCounts> RefitShard(const Source& source, const ShardOptions& shard, 
   RETURN_IF_ERROR(CheckFolderOf(shard.store));
   const auto before = MetaOf(shard.store);
   if (before && !before->shard) {
-    return Error(StatusCode::kInvalidArgument, shard.store.string() +
-                                                   ": this is the store of a whole batch, which a shard would replace; "
-                                                   "name a file such as out/shard-" +
-                                                   std::to_string(options.shard ? options.shard->index : 0) +
-                                                   ".sqlite");
+    return ErrorAt(StatusCode::kInvalidArgument, shard.store.string(),
+                   "this is the store of a whole batch, which a shard would replace; "
+                   "name a file such as out/shard-" +
+                       std::to_string(options.shard ? options.shard->index : 0) + ".sqlite");
   }
   RETURN_IF_ERROR(CopyBeginning(shard, attempt.path()));
   auto counts = Attempt(source, shard, options, attempt.path());
@@ -113,7 +112,7 @@ std::string ShardList(const std::vector<std::int64_t>& shards) {
 Result<std::vector<std::int64_t>> MissingShards(const fs::path& folder, std::int64_t count) {
   std::error_code unknown;
   if (!fs::is_directory(folder, unknown)) {
-    return Error(StatusCode::kNotFound, folder.string() + ": there is no such folder; check the path");
+    return ErrorAt(StatusCode::kNotFound, folder.string(), "there is no such folder; check the path");
   }
   std::vector<std::int64_t> missing;
   for (std::int64_t k = 0; k < count; ++k) {
@@ -168,32 +167,37 @@ void CopyRows(SQLite::Database& database, const std::string& table) {
 /// Lists in the table `kept` the runs whose result stays (WhyKept) instead of that of the attached store `shard`; they
 /// become stale.
 void KeepFormerResults(SQLite::Database& database) {
-  database.exec("DROP TABLE IF EXISTS temp.kept; CREATE TEMP TABLE kept(id TEXT PRIMARY KEY, reason TEXT)");
+  database.exec(
+      "DROP TABLE IF EXISTS temp.kept; CREATE TEMP TABLE kept(id TEXT PRIMARY KEY, stale TEXT, place TEXT, sentence "
+      "TEXT)");
   SQLite::Statement both(database, R"sql(
-SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.reason, ''), mine.exit_code, theirs.exit_code,
-    theirs.data_sha256 IS mine.data_sha256
+SELECT id, mine.result, coalesce(theirs.result, ''), coalesce(theirs.place, ''), coalesce(theirs.sentence, theirs.reason, ''),
+    mine.exit_code, theirs.exit_code, theirs.data_sha256 IS mine.data_sha256
   FROM main.runs AS mine JOIN shard.runs AS theirs USING(id)
   WHERE mine.result IS NOT NULL AND theirs.exit_code IS NOT NULL
     AND (theirs.result IS NULL OR theirs.data_sha256 IS NOT mine.data_sha256
       OR theirs.exit_code <> mine.exit_code))sql");
-  SQLite::Statement keep(database, "INSERT INTO kept VALUES(?, ?)");
+  SQLite::Statement keep(database, "INSERT INTO kept VALUES(?, ?, nullif(?, ''), ?)");
   const auto text = [&](int column) { return sqlite::Text(both, column); };
   const auto is_gone = [](const std::string&) { return false; };  // a merge does not see the recordings
   while (both.executeStep()) {
     const std::string result = text(2);
     const auto parsed = nlohmann::ordered_json::parse(result, nullptr, false);
-    const NewerOutcome newer{!result.empty(), RecordingOf(parsed), text(3), both.getColumn(5).getInt(),
-                             both.getColumn(6).getInt() != 0};
-    const std::string why = WhyKept(text(1), both.getColumn(4).getInt(), newer, is_gone);
+    const NewerOutcome newer{!result.empty(),
+                             RecordingOf(parsed),
+                             {text(3), text(4)},
+                             both.getColumn(6).getInt(),
+                             both.getColumn(7).getInt() != 0};
+    const Reason why = WhyKept(text(1), both.getColumn(5).getInt(), newer, is_gone);
     if (why.empty()) continue;
-    sqlite::Bind(keep, text(0), why).exec();
+    sqlite::Bind(keep, text(0), why.text(), why.place, why.sentence).exec();
     keep.reset();
   }
   database.exec(R"sql(
 UPDATE main.runs SET (position, path, rig, calibration, from_s, to_s, models, columns) =
     (SELECT position, path, rig, calibration, from_s, to_s, models, columns FROM shard.runs AS theirs
       WHERE theirs.id = main.runs.id),
-    stale = (SELECT reason FROM kept WHERE kept.id = main.runs.id)
+    (stale, place, sentence) = (SELECT stale, place, sentence FROM kept WHERE kept.id = main.runs.id)
   WHERE id IN (SELECT id FROM kept))sql");
 }
 
@@ -300,8 +304,8 @@ Result<void> CheckIsNoShard(const fs::path& folder, std::int64_t count, const fs
   std::error_code unknown;
   for (std::int64_t k = 0; k < count; ++k) {
     if (!fs::equivalent(ShardPath(folder, k), store, unknown)) continue;
-    return Error(StatusCode::kInvalidArgument,
-                 store.string() + ": this is one of the shards; name another store to merge them into");
+    return ErrorAt(StatusCode::kInvalidArgument, store.string(),
+                   "this is one of the shards; name another store to merge them into");
   }
   return {};
 }
@@ -326,9 +330,9 @@ Result<std::int64_t> MergeShards(const fs::path& folder, std::int64_t count, con
   const auto missing = MissingShards(folder, count);
   if (!missing) return tl::unexpected(missing.error());
   if (!missing->empty()) {
-    return Error(StatusCode::kNotFound, folder.string() + ": of " + std::to_string(count) +
-                                            " shards these are missing: " + ShardList(*missing) +
-                                            "; run them and merge again");
+    return ErrorAt(StatusCode::kNotFound, folder.string(),
+                   "of " + std::to_string(count) + " shards these are missing: " + ShardList(*missing) +
+                       "; run them and merge again");
   }
   RETURN_IF_ERROR(CheckOneBatch(folder, count));
   RETURN_IF_ERROR(CheckSameFiles(folder, count));

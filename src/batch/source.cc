@@ -37,18 +37,15 @@ Result<std::string> ReadFileInFolder(const fs::path& folder, const std::string& 
   std::error_code unknown;
   const fs::file_type type = fs::status(file, unknown).type();
   if (type == fs::file_type::not_found) {
-    return Error(StatusCode::kNotFound, path + ": there is no such file; check the path");
+    return ErrorAt(StatusCode::kNotFound, path, "there is no such file; check the path");
   }
   if (type == fs::file_type::directory) return Fault(path, "this is a directory; name a file in it");
   if (type != fs::file_type::regular && type != fs::file_type::none) {
     return Fault(path, "this is a pipe or a device; a batch reads files");
   }
   auto bytes = ReadFile(file, "CSV", kMaxRecordingBytes);
-  if (bytes) return bytes;
-  const std::string prefix = file.string() + ":";
-  std::string message = bytes.error().message;
-  if (message.starts_with(prefix)) message.replace(0, prefix.size(), path + ":");
-  return Error(bytes.error().code, message);
+  if (!bytes) bytes.error().place = path;
+  return bytes;
 }
 
 /// Whether a file begins with "SQLite format 3", as SQLite files do.
@@ -60,14 +57,14 @@ bool IsSqlite(const fs::path& path) {
 }
 
 constexpr int kPackId = 0x50656e70;  // "Penp"
-constexpr int kPackVersion = 1;
+constexpr int kPackVersion = 2;
 
 constexpr const char* kPackSchema = R"(
 CREATE TABLE entries(  -- one row a run, as ManifestEntry
   position INTEGER PRIMARY KEY, id TEXT NOT NULL, path TEXT NOT NULL, rig TEXT NOT NULL, calibration TEXT NOT NULL,
   from_s REAL, to_s REAL, models TEXT NOT NULL, columns TEXT NOT NULL);
-CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the exit code and message of why there is none
-  path TEXT PRIMARY KEY, code INTEGER, message TEXT, bytes BLOB);
+CREATE TABLE files(  -- recordings, rigs and calibrations, byte for byte; or the exit code and the sentence of why there is none
+  path TEXT PRIMARY KEY, code INTEGER, sentence TEXT, bytes BLOB);
 )";
 
 /// A packed file that is open for reading. SQLite serializes threads; the mutex protects the statement of Read.
@@ -76,7 +73,7 @@ class PackedFile {
   explicit PackedFile(const fs::path& path)
       : name_(path.string()), database_(sqlite::FileName(name_), SQLite::OPEN_READONLY), read_(database_, kRead) {}
 
-  static constexpr const char* kRead = "SELECT code, message, bytes FROM files WHERE path = ?";
+  static constexpr const char* kRead = "SELECT code, sentence, bytes FROM files WHERE path = ?";
 
   Result<void> Check() {
     const int id = database_.execAndGet("PRAGMA application_id").getInt();
@@ -103,10 +100,10 @@ class PackedFile {
   Result<std::string> Read(const std::string& path) {
     const std::scoped_lock lock(mutex_);
     sqlite::Bind(read_, path);
-    if (!read_.executeStep()) return Error(StatusCode::kNotFound, path + ": there is no such file in " + name_);
+    if (!read_.executeStep()) return ErrorAt(StatusCode::kNotFound, path, "there is no such file in " + name_);
     if (!read_.getColumn(0).isNull()) {
       const bool missing = read_.getColumn(0).getInt() == ExitCode(StatusCode::kNotFound);
-      return Error(missing ? StatusCode::kNotFound : StatusCode::kDataLoss, sqlite::Text(read_, 1));
+      return ErrorAt(missing ? StatusCode::kNotFound : StatusCode::kDataLoss, path, sqlite::Text(read_, 1));
     }
     return sqlite::Text(read_, 2);
   }
@@ -115,7 +112,7 @@ class PackedFile {
   /// Checks an entry, because another program may have written the pack.
   Result<void> CheckEntry(const ManifestEntry& entry) const {
     const auto models = FindMotionModels(entry.models);
-    if (!entry.models.empty() && !models) return Fault(name_, entry.id + ": " + models.error().message);
+    if (!entry.models.empty() && !models) return Fault(name_ + ": " + entry.id, models.error().message());
     const auto columns = nlohmann::ordered_json::parse(entry.columns, nullptr, false);
     const bool texts =
         columns.is_object() && std::ranges::all_of(columns, [](const auto& value) { return value.is_string(); });
@@ -154,9 +151,8 @@ Result<void> CheckReplaceable(const fs::path& path) {
     return CannotWrite(path.string(), "it is not a regular file; name a regular file");
   }
   if (IsSqlite(path) && OpenPack(path)) return {};
-  return Error(
-      StatusCode::kInvalidArgument,
-      path.string() + ": this file exists and is not a packed file, and pack would replace it; name another file");
+  return ErrorAt(StatusCode::kInvalidArgument, path.string(),
+                 "this file exists and is not a packed file, and pack would replace it; name another file");
 }
 
 /// A packed file that is being written.
@@ -195,13 +191,13 @@ class Packer {
     if (path.empty() || sqlite::Bind(has_file_, path).executeStep()) return;
     const auto bytes = source_.read(path);
     ++counts_.files;
-    if (!bytes && counts_.unreadable++ == 0) counts_.first_reason = bytes.error().message;
+    if (!bytes && counts_.unreadable++ == 0) counts_.first_reason = bytes.error().message();
     sqlite::Bind(add_file_, path);
     if (bytes) {
       add_file_.bind(4, bytes->data(), static_cast<int>(bytes->size()));
     } else {
       add_file_.bind(2, ExitCode(bytes.error().code));
-      add_file_.bind(3, bytes.error().message);
+      add_file_.bind(3, bytes.error().sentence);
     }
     add_file_.exec();
   }

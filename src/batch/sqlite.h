@@ -18,23 +18,25 @@
 /// Helpers for SQLite in the stores. Guard converts exceptions of SQLite to errors.
 namespace pendulum::sqlite {
 
+inline tl::unexpected<Status> Damaged(const std::string& name, const std::string& words) {
+  return Fault(name, "the file is damaged (" + words + "); restore it, or start with a new file");
+}
+
 /// Converts an exception of SQLite to an error about the file `name`.
 inline tl::unexpected<Status> ErrorFromSqlite(const std::string& name, const SQLite::Exception& error) {
   const std::string words = error.what();
   switch (error.getErrorCode() & 0xff) {  // the primary code; a backup throws extended ones
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return Error(StatusCode::kTryAgain, name + ": another process uses it; try again when that process is done");
-    case SQLITE_NOTADB: return Error(StatusCode::kDataLoss, name + ": this is not an SQLite file; name an SQLite file");
-    case SQLITE_CORRUPT:
-      return Error(StatusCode::kDataLoss,
-                   name + ": the file is damaged (" + words + "); restore it, or start with a new file");
+      return ErrorAt(StatusCode::kTryAgain, name, "another process uses it; try again when that process is done");
+    case SQLITE_NOTADB: return Fault(name, "this is not an SQLite file; name an SQLite file");
+    case SQLITE_CORRUPT: return Damaged(name, words);
     case SQLITE_FULL:
     case SQLITE_IOERR:
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
     case SQLITE_PERM: return Error(StatusCode::kCannotWrite, "cannot write " + name + ": " + words);
-    default: return Error(StatusCode::kInternal, name + ": " + words);
+    default: return ErrorAt(StatusCode::kInternal, name, words);
   }
 }
 
@@ -55,11 +57,9 @@ auto Guard(const std::string& name, const Work& work) -> decltype(work()) {
   } catch (const SQLite::Exception& error) {
     return ErrorFromSqlite(name, error);
   } catch (const nlohmann::json::exception& error) {
-    return Error(StatusCode::kDataLoss,
-                 name + ": the file is damaged (" + error.what() + "); restore it, or start with a new file");
+    return Damaged(name, error.what());
   } catch (const std::logic_error& error) {  // from std::stoll
-    return Error(StatusCode::kDataLoss,
-                 name + ": the file is damaged (" + error.what() + "); restore it, or start with a new file");
+    return Damaged(name, error.what());
   }
 }
 

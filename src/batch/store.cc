@@ -135,7 +135,7 @@ Result<void> MigrateOrCopy(const std::string& name, SQLite::Database& database) 
   SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // SQLite removes it when it is closed
   const int step = SQLite::Backup(copy, database).executeStep();
   if (step != SQLITE_DONE) {  // SQLITE_BUSY or SQLITE_LOCKED; SQLiteCpp throws other errors
-    return Error(StatusCode::kTryAgain, name + ": another process writes to the store; try again later");
+    return ErrorAt(StatusCode::kTryAgain, name, "another process writes to the store; try again later");
   }
   database = std::move(copy);
   return migrate(database);
@@ -210,8 +210,8 @@ struct Store::State {
   /// The number of the run with this id, in a transaction. kInternal: there is none.
   Result<std::int64_t> Find(const std::string& id);
   /// Why an outcome must not replace the result of a run; empty if it may.
-  std::string WhyWorse(const RunOutcome& outcome, std::int64_t run, const IsGone& is_gone);
-  void SetStale(std::int64_t run, const std::optional<std::string>& stale, const std::optional<std::string>& attempt);
+  Reason WhyWorse(const RunOutcome& outcome, std::int64_t run, const IsGone& is_gone);
+  void SetStale(std::int64_t run, const Reason& why, const std::optional<std::string>& attempt);
   Result<std::string> FillBatchTable(const Source& source);
   Result<std::int64_t> MarkOtherFiles(const Source& source, bool marks_unreadable);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
@@ -239,10 +239,10 @@ Result<std::int64_t> Store::State::Find(const std::string& id) {
   return run;
 }
 
-std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run, const IsGone& is_gone) {
+Reason Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run, const IsGone& is_gone) {
   SQLite::Statement& before =
       Prepared(result_of, "SELECT data_sha256, result, exit_code FROM runs WHERE run = ? AND result IS NOT NULL");
-  std::string why;
+  Reason why;
   if (sqlite::Bind(before, run).executeStep()) {
     const NewerOutcome newer{!outcome.result.is_null(), RecordingOf(outcome.result), outcome.reason, outcome.exit_code,
                              sqlite::Text(before, 0) == outcome.provenance.data_sha256};
@@ -252,9 +252,10 @@ std::string Store::State::WhyWorse(const RunOutcome& outcome, std::int64_t run, 
   return why;
 }
 
-void Store::State::SetStale(std::int64_t run, const std::optional<std::string>& stale,
-                            const std::optional<std::string>& attempt) {
-  sqlite::Bind(Prepared(set_stale, "UPDATE runs SET stale = ?, attempt = ? WHERE run = ?"), stale, attempt, run).exec();
+void Store::State::SetStale(std::int64_t run, const Reason& why, const std::optional<std::string>& attempt) {
+  sqlite::Bind(Prepared(set_stale, "UPDATE runs SET stale = ?, place = ?, sentence = ?, attempt = ? WHERE run = ?"),
+               NullIfEmpty(why.text()), NullIfEmpty(why.place), NullIfEmpty(why.sentence), attempt, run)
+      .exec();
 }
 
 /// Fills the temporary table `batch` with all entries; returns their hash.
@@ -278,7 +279,7 @@ Result<std::string> Store::State::FillBatchTable(const Source& source) {
     return {};
   }));
   if (!hash.empty()) return hash;
-  return Error(StatusCode::kFailedPrecondition, source.name + ": it names no recording; give one per row");
+  return ErrorAt(StatusCode::kFailedPrecondition, source.name, "it names no recording; give one per row");
 }
 
 /// Marks the results whose rig or calibration is not the file that the manifest names now.
@@ -335,7 +336,8 @@ void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
     }
     result = JsonText(outcome.result);
   }
-  sqlite::Bind(Prepared(put_run, kPutRun), outcome.exit_code, NullIfEmpty(outcome.reason), recommended,
+  sqlite::Bind(Prepared(put_run, kPutRun), outcome.exit_code, NullIfEmpty(outcome.reason.text()),
+               NullIfEmpty(outcome.reason.place), NullIfEmpty(outcome.reason.sentence), recommended,
                provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256, provenance.options_sha256,
                provenance.version, provenance.cpu, result, sources, run)
       .exec();
@@ -383,7 +385,7 @@ Result<Store> Store::Open(const fs::path& path, Mode mode) {
   const std::string name = path.string();
   std::error_code unknown;
   if (mode == Mode::kRead && !fs::exists(path, unknown)) {
-    return Error(StatusCode::kNotFound, name + ": there is no such store; check the path");
+    return ErrorAt(StatusCode::kNotFound, name, "there is no such store; check the path");
   }
   if (const auto checked = CheckFolderOf(path); mode != Mode::kRead && !checked) {
     return tl::unexpected(checked.error());
@@ -474,13 +476,13 @@ Result<std::string> Store::PutUnlessWorse(const std::string& id, const RunOutcom
                                           const IsGone& is_gone) {
   return sqlite::Guard(name(), [&]() -> Result<std::string> {
     ASSIGN_OR_RETURN(const auto run, state_->Find(id));
-    std::string stale = state_->WhyWorse(outcome, run, is_gone);
-    if (stale.empty()) {
+    const Reason why = state_->WhyWorse(outcome, run, is_gone);
+    if (why.empty()) {
       state_->PutRows(outcome, run);
     } else {
-      state_->SetStale(run, stale, attempt);
+      state_->SetStale(run, why, attempt);
     }
-    return stale;
+    return why.text();
   });
 }
 
@@ -525,7 +527,7 @@ Result<std::int64_t> Store::MarkChangedFiles(const Source& source) {
 Result<void> Store::MarkCurrent(const std::string& id) {
   return sqlite::Guard(name(), [&]() -> Result<void> {
     ASSIGN_OR_RETURN(const auto run, state_->Find(id));
-    state_->SetStale(run, std::nullopt, std::nullopt);
+    state_->SetStale(run, {}, std::nullopt);
     return {};
   });
 }

@@ -42,8 +42,8 @@ Result<StoreLock> StoreLock::Take(const std::filesystem::path& store) {
     if (descriptor < 0) return CannotWrite(store.string(), SystemErrorText(errno) + " (" + path + ")");
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       ::close(descriptor);
-      return Error(StatusCode::kTryAgain,
-                   store.string() + ": another process writes to this file; try again when it is done");
+      return ErrorAt(StatusCode::kTryAgain, store.string(),
+                     "another process writes to this file; try again when it is done");
     }
     if (IsStillThere(path, descriptor)) return StoreLock(path, descriptor);
     ::close(descriptor);

@@ -78,11 +78,11 @@ EXISTS (SELECT * FROM batch WHERE batch.id = runs.id AND (batch.path, batch.rig,
 /// Makes the results of the batch former ones, which are not current whatever their inputs are.
 inline constexpr const char* kForgetProvenance = R"sql(
 UPDATE runs SET stale = '--force asked for a new fit, and this run has not been fitted again yet',
-    options_sha256 = '', attempt = NULL
+    place = NULL, sentence = NULL, options_sha256 = '', attempt = NULL
   WHERE result IS NOT NULL AND id IN (SELECT id FROM batch))sql";
 
 inline constexpr const char* kPutRun = R"sql(
-UPDATE runs SET exit_code = ?, reason = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
+UPDATE runs SET exit_code = ?, reason = ?, place = ?, sentence = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
   options_sha256 = ?, version = ?, cpu = ?, result = ?, sources = ?, stale = NULL, attempt = NULL
   WHERE run = ?)sql";
 

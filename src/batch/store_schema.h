@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended, and tests/batch/golden_stores.py adds a store with it.
 /// The view `results` is replaced after them (ResultsView). SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 7> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 8> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -113,6 +113,16 @@ CREATE INDEX unlisted_by_data ON runs(data_sha256) WHERE position < 0;
 )sql",
                                                                      R"sql(
 UPDATE fits SET residual_unit = 'm_s2' WHERE residual_unit = 'm_s^2';  -- and the results are converted to schema version 3
+)sql",
+                                                                     R"sql(
+ALTER TABLE runs ADD COLUMN place TEXT;     -- what reason or stale is about: a path, perhaps with a line; NULL: not known
+ALTER TABLE runs ADD COLUMN sentence TEXT;  -- reason or stale without its place
+UPDATE runs SET place = path, sentence = substr(coalesce(stale, reason), length(path) + 3)
+  WHERE substr(coalesce(stale, reason), 1, length(path) + 2) = path || ': ';
+UPDATE runs SET sentence = ltrim(substr(reason, length(path) + 1), ':0123456789 ')  -- behind line and column
+  WHERE sentence IS NULL AND substr(reason, 1, length(path)) = path AND substr(reason, length(path) + 1) GLOB ':[0-9]*';
+UPDATE runs SET place = rtrim(substr(reason, 1, length(reason) - length(sentence)), ': ')
+  WHERE sentence IS NOT NULL AND place IS NULL;
 )sql"};
 
 /// The first version whose quantities have total_std_error, and runs have sources.

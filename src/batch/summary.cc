@@ -340,7 +340,7 @@ Result<StoreSummary> Summarize(Store& store, const SummaryOptions& options) {
   ASSIGN_OR_RETURN(const auto meta, store.Meta());
   ASSIGN_OR_RETURN(const auto counts, store.Count());
   if (counts.fits == 0) {
-    return Error(StatusCode::kFailedPrecondition, store.name() + ": no run has a fit; refit some first");
+    return ErrorAt(StatusCode::kFailedPrecondition, store.name(), "no run has a fit; refit some first");
   }
   return sqlite::Guard(store.name(), [&]() -> Result<StoreSummary> {
     SQLite::Database& database = store.database();

@@ -15,15 +15,10 @@ namespace {
 constexpr int kExamples = 10;
 
 std::vector<RunCounts::Run> ExamplesOf(SQLite::Database& database, const std::string& condition) {
-  SQLite::Statement rows(database, "SELECT id, coalesce(stale, reason), path FROM runs WHERE " + condition +
-                                       " ORDER BY position, id LIMIT " + std::to_string(kExamples));
+  SQLite::Statement rows(database, "SELECT id, iif(place = path, sentence, coalesce(stale, reason)) FROM runs WHERE " +
+                                       condition + " ORDER BY position, id LIMIT " + std::to_string(kExamples));
   std::vector<RunCounts::Run> runs;
-  while (rows.executeStep()) {
-    std::string reason = sqlite::Text(rows, 1);
-    const std::string path = sqlite::Text(rows, 2);
-    if (reason.starts_with(path + ": ")) reason.erase(0, path.size() + 2);
-    runs.push_back({sqlite::Text(rows, 0), std::move(reason)});
-  }
+  while (rows.executeStep()) runs.push_back({sqlite::Text(rows, 0), sqlite::Text(rows, 1)});
   return runs;
 }
 

@@ -87,7 +87,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     forms.table = decrement->table;
     forms.decrement = *std::move(decrement);
   } else {
-    forms.no_decrement = decrement.error().message;
+    forms.no_decrement = decrement.error().message();
     ASSIGN_OR_RETURN(TurningPointTable table, LocateTurningPoints(timed));
     forms.table = std::move(table);
   }
@@ -98,7 +98,7 @@ Result<ClosedForms> EstimateClosedForms(const Recording& recording, const Motion
     forms.envelope = DescribeEnvelopes(*laws);
     forms.envelopes = std::move(laws->single);
   } else {
-    forms.envelope = "not determined: " + laws.error().message;
+    forms.envelope = "not determined: " + laws.error().message();
   }
   forms.decay = TabulateDecay(forms.table, stop);
   forms.linear = ApplyLogDecrement(forms.table, model.gravity, stop);

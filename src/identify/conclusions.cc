@@ -17,7 +17,7 @@ namespace {
 void AddClosedForms(const MotionModel& model, const std::stop_token& stop, IdentifiedRecording& recording) {
   auto forms = EstimateClosedForms(recording.used, model, stop);
   if (!forms) {
-    recording.no_closed_forms = forms.error().message;
+    recording.no_closed_forms = forms.error().message();
     return;
   }
   recording.closed_forms = *std::move(forms);

@@ -193,11 +193,12 @@ Result<IdentifyOptions> OptionsForRig(IdentifyOptions options, const std::option
     if (model->gravity.is_linear()) continue;
     const auto spring = WithGravity(*model, Gravity::kLinear);
     if (!options.rig_chooses_gravity || !spring) {
-      return WithTry(Error(StatusCode::kInvalidArgument,
-                           rig->name + ": the rig gives the stiffness of a spring, but model " + name +
-                               " has the restoring torque of gravity; give " +
-                               (spring ? "--gravity linear" : "--model coulomb") + ", or a rig with a gravity torque"),
-                     {spring ? "--gravity linear" : "--model coulomb"});
+      return WithTry(
+          ErrorAt(StatusCode::kInvalidArgument, rig->name,
+                  "the rig gives the stiffness of a spring, but model " + name +
+                      " has the restoring torque of gravity; give " +
+                      (spring ? "--gravity linear" : "--model coulomb") + ", or a rig with a gravity torque"),
+          {spring ? "--gravity linear" : "--model coulomb"});
     }
     name = spring->name;
   }

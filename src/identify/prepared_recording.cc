@@ -69,13 +69,17 @@ Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOpt
   return PrepareRecording(std::move(read), options, std::move(rig));
 }
 
-tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path, int release) {
+tl::unexpected<Status> ErrorOfRun(Status status, const std::string& path, int release) {
   const std::string name = path == "-" ? "standard input" : path;
-  if (release == 0 && status.message.starts_with(name + ":")) return tl::unexpected(status);
-  const std::string where = name + ": ";
-  const std::size_t skip = status.message.starts_with(where) ? where.size() : 0;
-  return WithMessage(status, where + (release == 0 ? "" : "free swing " + std::to_string(release) + ": ") +
-                                 status.message.substr(skip));
+  const bool is_whole = status.place == name;
+  if (release == 0) {
+    const bool is_named = is_whole || status.place.starts_with(name + ":");
+    return is_named ? tl::unexpected(std::move(status)) : Within(name, std::move(status));
+  }
+  const std::string swing = name + ": free swing " + std::to_string(release);
+  if (!is_whole && !status.place.starts_with(name + ": ")) return Within(swing, std::move(status));
+  status.place.replace(0, name.size(), swing);
+  return tl::unexpected(std::move(status));
 }
 
 }  // namespace pendulum

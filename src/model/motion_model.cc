@@ -111,7 +111,7 @@ Result<std::vector<MotionModel>> FindMotionModels(std::string_view names, std::o
     auto found = FindMotionModel(name);
     if (!found)
       return Error(StatusCode::kInvalidArgument,
-                   found.error().message + "; or give 'all' by itself for every friction law");
+                   found.error().message() + "; or give 'all' by itself for every friction law");
     if (gravity) found = ChangeGravity(*found, *gravity);
     if (!found) return tl::unexpected(found.error());
     if (std::ranges::find(models, found->name, &MotionModel::name) != models.end()) {

@@ -220,14 +220,13 @@ std::string PeriodText(double gravity_over_inertia) {
 tl::unexpected<Status> Contradiction(const Rig& rig, double predicted, double seen, const LikelyUnit& likely,
                                      const std::string& gives = "gives") {
   const std::string ratio = rig.is_spring ? "k/I" : "G/I";
-  auto error =
-      Error(StatusCode::kDataLoss,
-            rig.name + ": the rig " + gives + " " + ratio + " = " + NumberText(predicted, kDigits) +
-                " 1/s^2, a period of " + PeriodText(predicted) + ", but the recording shows " +
-                NumberText(seen, kDigits) + " 1/s^2, a period of " + PeriodText(seen) + "; " +
-                (likely.question.empty() ? "correct the rig (SI units: kg, m, m/s^2, N m, kg m^2)" : likely.question) +
-                ". If the rig is right, correct the unit of the times with --time_column NAME:ms or "
-                "--sample_rate_hz");
+  auto error = Fault(rig.name, "the rig " + gives + " " + ratio + " = " + NumberText(predicted, kDigits) +
+                                   " 1/s^2, a period of " + PeriodText(predicted) + ", but the recording shows " +
+                                   NumberText(seen, kDigits) + " 1/s^2, a period of " + PeriodText(seen) + "; " +
+                                   (likely.question.empty() ? "correct the rig (SI units: kg, m, m/s^2, N m, kg m^2)"
+                                                            : likely.question) +
+                                   ". If the rig is right, correct the unit of the times with --time_column NAME:ms or "
+                                   "--sample_rate_hz");
   return likely.flag.empty() ? error : WithTry(std::move(error), {likely.flag});
 }
 

@@ -93,7 +93,7 @@ class ClockRepair {
   std::string TimeText(double time) const { return NumberText(time, kDigits) + " " + samples_.time_unit; }
   std::string LineText(Index row) const { return samples_.name + ":" + std::to_string(samples_.lines.LineOf(row)); }
   tl::unexpected<Status> Fault(Index row, const std::string& sentence) const {
-    return Error(StatusCode::kDataLoss, LineText(row) + ": " + sentence);
+    return pendulum::Fault(LineText(row), sentence);
   }
   void Warn(Index row, Warning warning) {
     warning.about.file = samples_.name;
@@ -659,12 +659,11 @@ Check RefuseDistantRows(const RawSamples& samples) {
     const bool is_wrong = (is_early || is_late) && gap > kFar * inner && gap > kManySteps * mean_step;
     if (!is_wrong && !(gap > kEndless * step)) continue;
     const Index row = is_early ? i : i + 1;
-    return Error(StatusCode::kDataLoss, samples.name + ":" + std::to_string(samples.lines.LineOf(row)) + ": the time " +
-                                            NumberText(time[row], kDigits) + " " + samples.time_unit + " is " +
-                                            NumberText(gap, 3) + " " + samples.time_unit + " from that of the row " +
-                                            (is_early ? "after" : "before") + " it, and rows are " +
-                                            NumberText(step, 3) + " " + samples.time_unit +
-                                            " apart; correct or remove this row");
+    return Fault(samples.name + ":" + std::to_string(samples.lines.LineOf(row)),
+                 "the time " + NumberText(time[row], kDigits) + " " + samples.time_unit + " is " + NumberText(gap, 3) +
+                     " " + samples.time_unit + " from that of the row " + (is_early ? "after" : "before") +
+                     " it, and rows are " + NumberText(step, 3) + " " + samples.time_unit +
+                     " apart; correct or remove this row");
   }
   return {};
 }
@@ -702,7 +701,7 @@ Result<RawSamples> RepairClock(RawSamples samples, const ClockWindow& window) {
                                                 "so only " +
                                                 std::to_string(rows.size()) + " of " + std::to_string(all) +
                                                 " rows were read",
-                                     .explanation = repaired.error().message,
+                                     .explanation = repaired.error().message(),
                                      .flags = {"from", "to"},
                                      .about = {.file = repaired_part->name}});
   return repaired_part;

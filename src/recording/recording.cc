@@ -11,10 +11,6 @@
 namespace pendulum {
 namespace {
 
-tl::unexpected<Status> Fault(const Recording& recording, StatusCode code, const std::string& sentence) {
-  return Error(code, recording.path.empty() ? sentence : recording.path + ": " + sentence);
-}
-
 std::string SampleText(Eigen::Index sample) { return "sample " + std::to_string(sample); }
 
 }  // namespace
@@ -23,30 +19,30 @@ Result<Recording> MakeRecording(Recording recording) {
   const Eigen::VectorXd& time = recording.time;
   const Eigen::VectorXd& value = recording.value;
   if (time.size() != value.size()) {
-    return Fault(recording, StatusCode::kDataLoss,
-                 std::to_string(time.size()) + " times and " + std::to_string(value.size()) +
-                     " values are not a recording; every sample needs one of each");
+    return ErrorAt(StatusCode::kDataLoss, recording.path,
+                   std::to_string(time.size()) + " times and " + std::to_string(value.size()) +
+                       " values are not a recording; every sample needs one of each");
   }
   if (time.size() < kMinimumSamples) {
-    return Fault(recording, StatusCode::kFailedPrecondition,
-                 std::to_string(time.size()) + " samples are too few for a recording; at least " +
-                     std::to_string(kMinimumSamples) + " are needed");
+    return ErrorAt(StatusCode::kFailedPrecondition, recording.path,
+                   std::to_string(time.size()) + " samples are too few for a recording; at least " +
+                       std::to_string(kMinimumSamples) + " are needed");
   }
   if (!(recording.resolution >= 0) || !std::isfinite(recording.resolution)) {
-    return Fault(
-        recording, StatusCode::kDataLoss,
+    return ErrorAt(
+        StatusCode::kDataLoss, recording.path,
         "the resolution is " + NumberText(recording.resolution) + "; it must be 0 (none) or positive and finite");
   }
   for (Eigen::Index i = 0; i < time.size(); ++i) {
     if (!std::isfinite(time[i]) || !std::isfinite(value[i])) {
-      return Fault(recording, StatusCode::kDataLoss,
-                   SampleText(i) + " is (" + NumberText(time[i]) + ", " + NumberText(value[i]) +
-                       "); time and value must be finite");
+      return ErrorAt(StatusCode::kDataLoss, recording.path,
+                     SampleText(i) + " is (" + NumberText(time[i]) + ", " + NumberText(value[i]) +
+                         "); time and value must be finite");
     }
     if (i > 0 && time[i] <= time[i - 1]) {
-      return Fault(recording, StatusCode::kDataLoss,
-                   "time " + NumberText(time[i]) + " s of " + SampleText(i) + " does not follow " +
-                       NumberText(time[i - 1]) + " s; times must increase");
+      return ErrorAt(StatusCode::kDataLoss, recording.path,
+                     "time " + NumberText(time[i]) + " s of " + SampleText(i) + " does not follow " +
+                         NumberText(time[i - 1]) + " s; times must increase");
     }
   }
   return recording;

@@ -35,7 +35,7 @@ class CalibrationReader {
 
  private:
   tl::unexpected<Status> Fault(std::string_view key, const std::string& sentence) const {
-    return Error(StatusCode::kDataLoss, name_ + ": " + Quoted(key) + " " + sentence);
+    return pendulum::Fault(name_, Quoted(key) + " " + sentence);
   }
 
   tl::unexpected<Status> Wrong(std::string_view key, const Json& value, const std::string& rule) const {

@@ -45,13 +45,9 @@ std::string KeyNames() {
 
 std::string KindRule() { return "it must be one of " + NameList(kKinds); }
 
-tl::unexpected<Status> StatementFault(const std::string& name, const std::string& sentence) {
-  return Error(StatusCode::kDataLoss, name + ": " + sentence);
-}
-
 Result<void> ReadKind(const SensorJson& value, const std::string& name, SensorStatement& statement) {
   if (!value.is_string() || !IsSensorKind(value.get_ref<const std::string&>())) {
-    return StatementFault(name, "\"kind\" is " + JsonForMessage(value) + "; " + KindRule());
+    return Fault(name, "\"kind\" is " + JsonForMessage(value) + "; " + KindRule());
   }
   statement.kind = value.get<std::string>();
   return {};
@@ -63,8 +59,8 @@ Result<void> ReadSize(const SizeKey& size, const SensorJson& value, const std::s
   constexpr double kLargest = 10;
   const double std_dev = value.is_number() ? value.get<double>() : -1;
   if (!(std_dev >= 0 && std_dev <= kLargest)) {
-    return StatementFault(name, Quoted(size.key) + " is " + JsonForMessage(value) +
-                                    "; it must be a standard deviation, a number from 0 (exact) to 10 in SI units");
+    return Fault(name, Quoted(size.key) + " is " + JsonForMessage(value) +
+                           "; it must be a standard deviation, a number from 0 (exact) to 10 in SI units");
   }
   for (const SensorEffect effect : size.effects) statement.std_devs[static_cast<std::size_t>(effect)] = std_dev;
   return {};
@@ -74,11 +70,11 @@ Result<void> ReadSensorKey(const std::string& key, const SensorJson& value, cons
                            SensorStatement& statement) {
   if (key == "schema_version") {
     if (value.is_null() || value == 1) return {};
-    return StatementFault(name, "\"schema_version\" is " + JsonForMessage(value) + "; it must be 1");
+    return Fault(name, "\"schema_version\" is " + JsonForMessage(value) + "; it must be 1");
   }
   const auto size = std::ranges::find(SizeKeys(), key, &SizeKey::key);
   if (key != "kind" && size == SizeKeys().end()) {
-    return StatementFault(name, Quoted(key) + " is not a key of a sensor; the keys are " + KeyNames());
+    return Fault(name, Quoted(key) + " is not a key of a sensor; the keys are " + KeyNames());
   }
   if (value.is_null()) return {};
   return key == "kind" ? ReadKind(value, name, statement) : ReadSize(*size, value, name, statement);
@@ -98,8 +94,8 @@ Result<SensorStatement> ParseSensorStatement(std::string_view text, const std::s
     return statement;
   }
   if (text.find('{') == std::string_view::npos) {
-    return StatementFault(name, Quoted(text) + " is not a kind of sensor; " + KindRule() +
-                                    ", or a JSON object such as " + std::string(kFormOfStatement));
+    return Fault(name, Quoted(text) + " is not a kind of sensor; " + KindRule() + ", or a JSON object such as " +
+                           std::string(kFormOfStatement));
   }
   ASSIGN_OR_RETURN(const SensorJson json, ParseJsonObject(text, name, "sensor", kFormOfStatement));
   for (const auto& item : json.items()) {
@@ -107,7 +103,7 @@ Result<SensorStatement> ParseSensorStatement(std::string_view text, const std::s
   }
   const bool has_size = std::ranges::any_of(statement.std_devs, [](const auto& size) { return size.has_value(); });
   if (statement.kind.empty() && !has_size) {
-    return StatementFault(name, "the sensor states nothing; give at least one of " + KeyNames());
+    return Fault(name, "the sensor states nothing; give at least one of " + KeyNames());
   }
   return statement;
 }

@@ -17,13 +17,12 @@ std::string SpanText(double from, double to) {
 }
 
 tl::unexpected<Status> TooFew(const Recording& recording, Eigen::Index count, double from, double to) {
-  const std::string prefix = recording.path.empty() ? "" : recording.path + ": ";
   const std::string span =
       recording.size() == 0 ? "is empty" : "spans " + SpanText(recording.time[0], recording.time[recording.size() - 1]);
-  return Error(StatusCode::kFailedPrecondition, prefix + "the window " + SpanText(from, to) + " leaves " +
-                                                    std::to_string(count) + " samples of a recording that " + span +
-                                                    "; at least " + std::to_string(kMinimumSamples) +
-                                                    " are needed: widen the window");
+  return ErrorAt(StatusCode::kFailedPrecondition, recording.path,
+                 "the window " + SpanText(from, to) + " leaves " + std::to_string(count) +
+                     " samples of a recording that " + span + "; at least " + std::to_string(kMinimumSamples) +
+                     " are needed: widen the window");
 }
 
 }  // namespace

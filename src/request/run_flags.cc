@@ -286,7 +286,7 @@ bool IsSensorText(const std::string& text) { return IsSensorKind(text) || text.f
 Result<void> ParseStatedSensor(const RunFlags& flags, IdentifyOptions& options) {
   if (flags.sensor.empty()) return {};
   auto statement = ParseSensorStatement(flags.sensor, "--sensor", std::string(kSensorSource));
-  if (!statement) return BadFlag(statement.error().message);
+  if (!statement) return BadFlag(statement.error().message());
   options.sensor = *std::move(statement);
   return {};
 }
@@ -567,8 +567,8 @@ Result<std::string> ReadSensorFile(RunFlags& flags) {
   if (flags.sensor.empty() || IsSensorText(flags.sensor)) return std::string();
   auto text = ReadFile(flags.sensor, "sensor", kMaxJsonBytes);
   if (!text) {
-    return WithMessage(
-        text.error(), text.error().message + "; --sensor takes a file or a kind of sensor: " + NameList(SensorKinds()));
+    text.error().sentence += "; --sensor takes a file or a kind of sensor: " + NameList(SensorKinds());
+    return text;
   }
   RETURN_IF_ERROR(ParseSensorStatement(*text, flags.sensor, ""));
   return std::exchange(flags.sensor, *std::move(text));
@@ -582,7 +582,7 @@ Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   options.checks = checks;
   ASSIGN_OR_RETURN(const auto gravity, ParseWord("--gravity", flags.gravity, kGravities));
   const auto models = FindMotionModels(ModelOf(flags), gravity);
-  if (!models) return BadFlag("--model: " + models.error().message);
+  if (!models) return Within("--model", models.error());
   options.fit.gravity = gravity;
   options.swing.is_spring =
       std::ranges::all_of(*models, [](const MotionModel& model) { return model.gravity.is_linear(); });

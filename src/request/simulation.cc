@@ -35,7 +35,7 @@ Result<OutputUnit> FindUnit(const std::string& name) {
 
 Result<MotionModel> ChooseModel(const SimulationFlags& flags) {
   Result<MotionModel> model = FindMotionModel(flags.model);
-  if (!model) return BadFlag("--model: " + model.error().message);
+  if (!model) return Within("--model", model.error());
   if (flags.gravity.empty()) return model;
   const std::optional<Gravity> gravity = Gravity::Named(flags.gravity);
   if (!gravity)
@@ -339,7 +339,7 @@ Result<Simulation> SimulationOfRecording(const Simulation& all, int index) {
   if (simulation.scattered.empty()) return simulation;
   // The true values begin with the model's parameters, in order.
   const auto values = ScatterParameters(simulation.scattered, FindOrderedPair(synthetic.model), synthetic.seed);
-  if (!values) return BadFlag("--spread: " + values.error().message);
+  if (!values) return Within("--spread", values.error());
   for (std::size_t i = 0; i < values->size(); ++i) simulation.truth[i].second = (*values)[i];
   SetMotion({simulation.truth.begin(), simulation.truth.end()}, simulation.gravity_torque, synthetic);
   return simulation;

@@ -229,7 +229,7 @@ Result<void> BatchQueue::TryOne(const FitStore::Waiting& run) {
     try {
       RunOutcome outcome;
       outcome.exit_code = ExitCode(StatusCode::kInternal);
-      outcome.reason = std::string("internal error: ") + error.what();
+      outcome.reason.sentence = std::string("internal error: ") + error.what();
       return StoreOutcome(run, outcome);
     } catch (const std::exception&) {
       return Error(StatusCode::kInternal, "out of memory");  // short enough to need no allocation
@@ -252,7 +252,7 @@ Result<void> BatchQueue::FitOne(const FitStore::Waiting& run) {
     fitted = fitter_.Fit(*options, std::move(kept->order.files), unwanted);
   } else {
     fitted.outcome.exit_code = ExitCode(options.error().code);
-    fitted.outcome.reason = options.error().message;
+    fitted.outcome.reason = ReasonOf(options.error());
   }
   {
     const std::scoped_lock lock(mutex_);
@@ -270,7 +270,7 @@ Result<void> BatchQueue::StoreOutcome(const FitStore::Waiting& run, const RunOut
     if (is_removed) {
       progress.MarkRemoved(run.id);
     } else {
-      progress.MarkDone(run.id, outcome.exit_code, outcome.reason);
+      progress.MarkDone(run.id, outcome.exit_code, outcome.reason.text());
     }
   });
   return {};
@@ -280,7 +280,7 @@ void BatchQueue::ReportReason(const FitStore::Waiting& run, const Status& why, s
   try {
     metrics_.CountRetry();
     if (!say_) return;
-    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message + "; it is tried again within " +
+    say_("run " + run.id + " of batch " + run.batch + " waits: " + why.message() + "; it is tried again within " +
          std::to_string(pause.count()) + " s");
   } catch (const std::exception&) {
     return;  // a message needs memory; the run continues without it

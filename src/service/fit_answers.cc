@@ -69,7 +69,7 @@ HttpResponse StoppingAnswer() {
 
 HttpResponse StoppedAnswer(const ServiceState& state, const Status& status) {
   if (state.is_stopping) return StoppingAnswer();
-  return ProblemResponse(RetryLater(ProblemKind::kTimedOut, status.message));
+  return ProblemResponse(RetryLater(ProblemKind::kTimedOut, status.message()));
 }
 
 /// Fits the request and stores the fit.

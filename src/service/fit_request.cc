@@ -142,7 +142,7 @@ class FormReader {
   Result<void> ReadOptionsPart(const FormPart& part) {
     if (std::exchange(has_options_, true)) return RepeatedPartError(part.name);
     const auto object = ParseJsonObject(part.content, "options", "set of options", R"({"model": "coulomb"})");
-    if (!object) return Error(StatusCode::kInvalidArgument, object.error().message);
+    if (!object) return Error(StatusCode::kInvalidArgument, object.error().message());
     return AddOptions(*object, request_.flags);
   }
 
@@ -187,7 +187,7 @@ Result<void> ReadMember(const std::string& name, const Json& value, FitRequest& 
 
 Result<Json> ParseBody(const std::string& body) {
   auto json = ParseJsonObject(body, "the body", "request", kFormOfJson, body.size());
-  if (!json) return Error(StatusCode::kInvalidArgument, json.error().message);
+  if (!json) return Error(StatusCode::kInvalidArgument, json.error().message());
   return json;
 }
 
@@ -375,7 +375,7 @@ ResultOrProblem<std::string> ParseNameRequest(const HttpRequest& http) {
   constexpr std::array<std::string_view, 2> kTypes = {"application/json", "application/merge-patch+json"};
   RETURN_IF_ERROR(CheckKind(http, kTypes));
   auto json = ParseJsonObject(http.body, "the body", "change", R"({"name": "Heavy bob"})", http.body.size());
-  if (!json) return Refused(ProblemKind::kWrongRequest, json.error().message);
+  if (!json) return Refused(ProblemKind::kWrongRequest, json.error().message());
   if (json->size() != 1 || !json->contains("name") || !(*json)["name"].is_string()) {
     return Refused(ProblemKind::kWrongRequest,
                    "the body is " + JsonForMessage(*json) + "; it must have one member, name, a text");

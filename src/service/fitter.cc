@@ -49,7 +49,7 @@ FinishedRun Fitter::Fit(const IdentifyOptions& asked, RunFiles files, const std:
   fitted.run = nullptr;
   fitted.outcome.result = nullptr;
   fitted.outcome.exit_code = ExitCode(fitted.error->code);
-  fitted.outcome.reason = fitted.error->message;
+  fitted.outcome.reason = ReasonOf(*fitted.error);
   return fitted;
 }
 

@@ -77,7 +77,7 @@ Result<std::string> WholeLinesOf(const std::filesystem::path& run) {
   int descriptor = OpenRegularFile(run.string() + ".part");
   if (descriptor < 0) descriptor = OpenRegularFile(run);
   if (descriptor < 0) {
-    return Error(StatusCode::kNotFound, name + ": there is no recording yet; start record_pendulum --out " + name);
+    return ErrorAt(StatusCode::kNotFound, name, "there is no recording yet; start record_pendulum --out " + name);
   }
   auto bytes = WholeLinesOf(descriptor, name);
   ::close(descriptor);

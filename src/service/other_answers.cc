@@ -45,7 +45,7 @@ Result<SimulationRequest> ParseSimulationRequest(const Call& call) {
   SimulationRequest request{QueryFlags(call.target), std::nullopt};
   if (call.http.body.empty()) return request;
   auto json = ParseJsonObject(call.http.body, "the body", "simulation", R"({"set": "inertia=0.079,..."})");
-  if (!json) return Error(StatusCode::kInvalidArgument, json.error().message);
+  if (!json) return Error(StatusCode::kInvalidArgument, json.error().message());
   if (json->contains("rig") && !(*json)["rig"].is_null()) {
     ASSIGN_OR_RETURN(auto rig, ParseRig(JsonText((*json)["rig"]), "rig"));
     request.rig = std::move(rig);

@@ -66,10 +66,7 @@ void AskForRig(const IdentifyOptions& options, Preview& preview) {
   std::vector<Warning> notes;
   const auto rig = RigOfValues(options.rig_values, notes);
   if (rig) return;
-  const std::string prefix = std::string(kRigOfValuesName) + ": ";
-  const std::string& message = rig.error().message;
-  ReadQuestion question{
-      message.starts_with(prefix) ? message.substr(prefix.size()) : message, {}, rig.error().try_flags, {}};
+  ReadQuestion question{rig.error().sentence, {}, rig.error().try_flags, {}};
   for (const std::string& flag : FlagsIn(question.sentence)) {
     const auto key = std::ranges::find(RigKeys(), flag, &RigKey::flag);
     if (key != RigKeys().end() && !options.rig_values.contains(key->name)) question.options.push_back(flag);
@@ -112,7 +109,7 @@ Result<Preview> MakePreview(FitRequest request, const std::stop_token& client_go
     const Status& error = run.error();
     preview.missing = std::exchange(preview.table.questions, {});
     if (preview.missing.empty() && !error.try_flags.empty()) {
-      preview.missing = {{error.message, {}, error.try_flags, {}}};
+      preview.missing = {{error.message(), {}, error.try_flags, {}}};
     }
     if (preview.missing.empty()) return tl::unexpected(error);
     for (ReadQuestion& question : preview.missing) AddNamedOptions(question);

@@ -94,7 +94,7 @@ int Problem::status() const { return KindOf(kind).status; }
 std::string_view Problem::code() const { return KindOf(kind).code; }
 
 Problem ProblemOf(const Status& status) {
-  Problem problem = ProblemOfKind(KindOf(status.code), status.message);
+  Problem problem = ProblemOfKind(KindOf(status.code), status.message());
   problem.try_flags = status.try_flags;
   return problem;
 }

@@ -67,7 +67,7 @@ ResultOrProblem<ReadingsRequest> ParseReadingsRequest(const HttpRequest& http) {
   RETURN_IF_ERROR(CheckKind(http, kTypes));
   const auto body =
       ParseJsonObject(http.body, "the body", "request", R"({"parameters": {"inertia": 0.08}})", http.body.size());
-  if (!body) return Refused(ProblemKind::kWrongRequest, body.error().message);
+  if (!body) return Refused(ProblemKind::kWrongRequest, body.error().message());
   auto request = RequestOf(*body);
   if (!request) return Refused(request.error());
   return *std::move(request);

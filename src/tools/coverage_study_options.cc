@@ -43,7 +43,7 @@ Result<CoverageStudyOptions> MakeCoverageStudyOptions(const CoverageFlags& flags
         "--scenario is missing; give names of scenarios, separated by commas, or all; --list shows the names");
   }
   auto scenarios = FindCoverageScenarios(flags.scenario.empty() ? "all" : flags.scenario);
-  if (!scenarios) return BadFlag("--scenario: " + scenarios.error().message);
+  if (!scenarios) return Within("--scenario", scenarios.error());
   options.scenarios = *std::move(scenarios);
   options.study.count = flags.count;
   options.study.runs = flags.runs;

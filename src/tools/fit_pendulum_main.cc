@@ -117,17 +117,11 @@ Result<std::string> TextOf(const FitPendulumOptions& options, const Identificati
   return text + (options.details ? ToText(run, style) : SummaryText(SummarizeResult(run), kMore, style));
 }
 
-/// A message about a recording that names its file.
-std::string WithPath(const Identification& run, const std::string& message) {
-  const std::string path = run.path();
-  return path.empty() || message.find(path) != std::string::npos ? message : path + ": " + message;
-}
-
 /// What must not be overlooked where only numbers are shown: that they should not be quoted, or not without a doubt.
 void PrintVerdict(const Identification& run) {
   if (run.fits.empty() || run.fits[run.MainFit()].termination != Termination::kConverged) return;
   const FitSummary summary = SummarizeFit(run, run.MainFit());
-  if (summary.emphasis != Emphasis::kNone) PrintMessage(kName, "warning: " + WithPath(run, summary.verdict));
+  if (summary.emphasis != Emphasis::kNone) PrintMessage(kName, "warning: " + MessageAt(run.path(), summary.verdict));
 }
 
 /// Says which laws have no result. The summary says why, if it is shown.
@@ -137,7 +131,7 @@ void PrintFailures(const Identification& run, bool is_summarized) {
     if (fit.termination == Termination::kConverged || (is_summarized && i != run.MainFit())) continue;
     const std::string outcome =
         "no result with " + std::string(fit.model.name) + " (" + std::string(TerminationName(fit.termination)) + ")";
-    PrintMessage(kName, WithPath(run, is_summarized ? outcome : outcome + ": " + fit.reason));
+    PrintMessage(kName, MessageAt(run.path(), is_summarized ? outcome : outcome + ": " + fit.reason));
   }
 }
 
@@ -161,7 +155,8 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
     if (options.quiet) PrintVerdict(*run);
     if (data_on_stdout) {
       for (const Warning& warning : AllWarnings(*run))
-        PrintMessage(kName, "warning: " + WithPath(*run, MessageText(warning)));
+        PrintMessage(kName,
+                     "warning: " + MessageAt(warning.about.file.empty() ? run->path() : "", MessageText(warning)));
     }
     PrintFailures(*run, !options.quiet && !data_on_stdout);
   }
@@ -173,7 +168,7 @@ Result<int> Work(const Flags& flags) {
   ASSIGN_OR_RETURN(auto options, MakeFitPendulumOptions(flags));
   ASSIGN_OR_RETURN(const auto setup, ReadSetup(options));
   if (const auto plots = options.terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
-    return Error(plots.error().code, "--terminal_plot: " + plots.error().message);
+    return Within("--terminal_plot", plots.error());
   }
   auto checked = CheckOutputs(options.Outputs(), setup.inputs);
   if (checked) checked = CheckNumberedOutputs(options, setup, setup.paths.size());

@@ -158,7 +158,8 @@ std::string PartRemark(const RecordPendulumOptions& options, const RecordedRun& 
 /// Writes the recording, removes its part file, and prints a summary.
 Result<void> SaveRecording(const RecordPendulumOptions& options, const RecordedRun& recorded) {
   if (auto written = WriteOutputs(std::vector<Output>{{options.out, recorded.Csv()}}); !written) {
-    return Error(written.error().code, written.error().message + PartRemark(options, recorded));
+    written.error().sentence += PartRemark(options, recorded);
+    return written;
   }
   PartFile(options.out).Remove();
   const std::string text = RecordText(recorded, options.out);
@@ -226,7 +227,7 @@ Result<int> RunTask(const RecordPendulumOptions& options, const std::string& por
   if (options.task == RecordTask::kCounts) return PrintCounts(options, *info, logger);
   if (options.task == RecordTask::kStoreCalibration) {
     const auto line = StraightLineOf(*given);
-    if (!line) return Error(line.error().code, "--store_calibration: " + line.error().message);
+    if (!line) return Within("--store_calibration", line.error());
     info = logger.StoreCalibration(*line);
     if (!info) return tl::unexpected(info.error());
   }
@@ -250,7 +251,7 @@ Result<int> Work(const OpenPort& open, const Flags& flags) {
   Logger logger(*opened, stop);
   auto code = RunTask(options, port, given, logger);
   if (!code && code.error().code == StatusCode::kTryAgain && stop) {
-    PrintMessage(kRecordToolName, code.error().message);
+    PrintMessage(kRecordToolName, code.error().message());
     return kInterrupted;
   }
   return code;

@@ -128,7 +128,7 @@ Result<void> RunInProgress::Begin() {
   last_poll_ = Now();
   auto opened = part_.Open();
   if (opened) opened = part_.Append(RunHead(recorded_.description, options_.rate));
-  if (!opened) recorded_.part_file_error = opened.error().message;
+  if (!opened) recorded_.part_file_error = opened.error().message();
   return {};
 }
 
@@ -142,7 +142,7 @@ void RunInProgress::ReceiveUntilOver() {
     stopping_ += is_stopping_ ? polled : 0;
     last_poll_ = now;
     if (!received) {
-      EndAsLost(received.error().message);
+      EndAsLost(received.error().message());
     } else if (*received) {
       ProcessMessage(**received);
     }
@@ -210,7 +210,7 @@ void RunInProgress::StopWhenDue(double now) {
   } else if (!repeat_.IsDue(now)) {
     return;
   }
-  if (auto sent = logger_.RequestStop(); !sent) EndAsLost(sent.error().message);
+  if (auto sent = logger_.RequestStop(); !sent) EndAsLost(sent.error().message());
 }
 
 /// Appends the new samples to the part file.
@@ -221,7 +221,7 @@ void RunInProgress::WritePartFile(double now) {
   auto kept = part_.Append(rows);
   if (kept) kept = part_.Synchronise();
   if (kept) return;
-  recorded_.part_file_error = kept.error().message;
+  recorded_.part_file_error = kept.error().message();
   if (!is_live_)
     PrintMessage(kRecordToolName, "warning: " + recorded_.part_file_error + "; the recording continues only in memory");
 }

@@ -138,7 +138,7 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
   } else if (!flags.positional.empty()) {
     const std::string& word = flags.positional.front();
     if (HasRecordingName(word) || word.find('/') != std::string::npos) {
-      return Error(StatusCode::kNotFound, word + ": there is no such file or folder; check the path");
+      return ErrorAt(StatusCode::kNotFound, word, "there is no such file or folder; check the path");
     }
     std::vector<std::string_view> names;
     for (const CommandFlags& command : Commands()) names.push_back(command.name);

@@ -33,7 +33,7 @@ Result<int> Run(const Tool& tool, int argc, char** argv) {
 }  // namespace
 
 void PrintError(std::string_view name, const Status& error) {
-  PrintMessage(name, error.message);
+  PrintMessage(name, error.message());
   if (!error.try_flags.empty()) std::cerr << "try: " << CommandToTry(GivenCommand(), error.try_flags) << '\n';
 }
 

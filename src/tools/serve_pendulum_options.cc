@@ -120,14 +120,16 @@ Result<std::string> ReadToken(const std::string& token_file, const char* from_en
     if (!text) return text;
     token = text->substr(0, text->find_first_of("\r\n"));
     where = token_file;
-    if (token.empty()) return BadFlag(where + ": the first line is empty; it must be the token");
+    if (token.empty())
+      return ErrorAt(StatusCode::kInvalidArgument, where, "the first line is empty; it must be the token");
   }
   if (token.empty()) return token;
   constexpr std::size_t kShortest = 16;
   const bool is_visible = std::ranges::all_of(token, [](char c) { return c > ' ' && c <= '~'; });
   if (token.size() >= kShortest && is_visible) return token;
-  return BadFlag(where + ": the token must have at least " + std::to_string(kShortest) +
-                 " visible ASCII characters, and no blanks; openssl rand -hex 32 makes one");
+  return ErrorAt(StatusCode::kInvalidArgument, where,
+                 "the token must have at least " + std::to_string(kShortest) +
+                     " visible ASCII characters, and no blanks; openssl rand -hex 32 makes one");
 }
 
 }  // namespace pendulum

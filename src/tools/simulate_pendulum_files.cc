@@ -48,8 +48,7 @@ Result<void> WriteRecording(const SimulateOptions& all, int index) {
   const std::uint64_t seed = simulation.synthetic.seed;
   Result<std::string> csv = SimulatedCsv(simulation, seed);
   if (!csv) {
-    const std::string which = all.count == 1 ? "" : "seed " + std::to_string(seed) + ": ";
-    return Error(csv.error().code, which + csv.error().message);
+    return Within(all.count == 1 ? "" : "seed " + std::to_string(seed), csv.error());
   }
   const std::vector<NamedFile> files = all.Outputs(index);
   std::vector<Output> outputs = {{files.front().path, *std::move(csv)}};
@@ -68,7 +67,7 @@ class FirstError {
     const std::scoped_lock lock(mutex_);
     if (index >= index_) return;
     index_ = index;
-    error_ = Error(status.code, status.message);
+    error_ = tl::unexpected(status);
   }
 
   const Result<void>& error() const { return error_; }

@@ -42,8 +42,8 @@ template <class T>
 std::string FaultOf(const Result<T>& result) {
   EXPECT_FALSE(result);
   if (result) return "";
-  EXPECT_EQ(result.error().code, StatusCode::kDataLoss) << result.error().message;
-  return result.error().message;
+  EXPECT_EQ(result.error().code, StatusCode::kDataLoss) << result.error().message();
+  return result.error().message();
 }
 
 // ---- Connect -----------------------------------------------------------------------------------------------------
@@ -55,7 +55,7 @@ TEST(Logger, ConnectsToALoggerThatAnswersAtOnce) {
   script.info.calibration = kLine;
   Connection connection(script);
   const auto info = connection.logger.Connect();
-  ASSERT_TRUE(info) << info.error().message;
+  ASSERT_TRUE(info) << info.error().message();
   EXPECT_EQ(connection.board.Time(), 0);
   EXPECT_EQ(info->firmware, 0x0102);
   EXPECT_EQ(info->run, 41);
@@ -77,7 +77,7 @@ TEST(Logger, WaitsForABootLoader) {
   script.deaf_seconds = 1.2;
   Connection connection(script);
   const auto info = connection.logger.Connect();
-  ASSERT_TRUE(info) << info.error().message;
+  ASSERT_TRUE(info) << info.error().message();
   EXPECT_EQ(connection.board.Time(), 1.5);  // it asks every half second
 }
 
@@ -87,7 +87,7 @@ TEST(Logger, StopsARunOfAnEarlierProgram) {
   Connection connection(script);
   ASSERT_TRUE(connection.board.Read(0.1));  // data are already arriving
   const auto info = connection.logger.Connect(2);
-  ASSERT_TRUE(info) << info.error().message;
+  ASSERT_TRUE(info) << info.error().message();
   EXPECT_EQ(info->is_running, 0);
 }
 
@@ -159,7 +159,7 @@ TEST(Logger, SetsTheRate) {
   Connection connection;
   ASSERT_TRUE(connection.logger.SetRate({1250, 16}));
   const auto info = connection.logger.Connect();
-  ASSERT_TRUE(info) << info.error().message;
+  ASSERT_TRUE(info) << info.error().message();
   EXPECT_EQ(info->period, 1250);
   EXPECT_EQ(info->oversample, 16);
 }
@@ -179,7 +179,7 @@ TEST(Logger, IgnoresAnswersToOtherCommands) {
   script.greeting.resize(wire::MakeFrame(wire::Ack{'X', wire::kUnknown}, script.greeting.data()));
   Connection connection(script);
   const auto set = connection.logger.SetRate({10000, 1});
-  EXPECT_TRUE(set) << set.error().message;
+  EXPECT_TRUE(set) << set.error().message();
 }
 
 TEST(Logger, ReportsAnUnansweredCommand) {
@@ -204,7 +204,7 @@ TEST(Logger, ReportsRefusals) {
 TEST(Logger, StoresACalibrationAndReadsItBack) {
   Connection connection;
   const auto info = connection.logger.StoreCalibration(kLine);
-  ASSERT_TRUE(info) << info.error().message;
+  ASSERT_TRUE(info) << info.error().message();
   EXPECT_EQ(info->has_calibration, 1);
   EXPECT_EQ(info->calibration.offset_deg, -135);
   EXPECT_EQ(info->calibration.slope_variance, 1.25e-7F);
@@ -229,7 +229,7 @@ template <class Message>
 std::optional<Message> Next(Logger& logger) {
   for (int i = 0; i < 200; ++i) {
     const auto received = logger.Receive(1);
-    EXPECT_TRUE(received) << received.error().message;
+    EXPECT_TRUE(received) << received.error().message();
     if (!received || !*received) return std::nullopt;
     if (const auto* message = std::get_if<Message>(&(*received)->message)) return *message;
   }
@@ -269,7 +269,7 @@ TEST(Logger, StartsIfTheFirstAnswerIsLost) {
   script.lost_answers['S'] = 1;
   Connection connection(script);
   const auto started = connection.logger.Start();
-  ASSERT_TRUE(started) << started.error().message;
+  ASSERT_TRUE(started) << started.error().message();
   EXPECT_TRUE(Next<wire::Data>(connection.logger));
   EXPECT_EQ(connection.board.Heard(), "S");  // the samples also count as an answer
 }
@@ -287,7 +287,7 @@ TEST(Logger, CountsOnlyTheRunsInvalidFrames) {
 TEST(Logger, ReturnsNothingIfNothingArrived) {
   Connection connection;
   const auto received = connection.logger.Receive(0.1);
-  ASSERT_TRUE(received) << received.error().message;
+  ASSERT_TRUE(received) << received.error().message();
   EXPECT_FALSE(*received);
   EXPECT_EQ(connection.board.Time(), 0.1);
 }

@@ -58,7 +58,7 @@ std::string Text(const RunDescription& description, const ReceivedRun& run) {
 /// The text as ReadRecording reads it.
 Recording ReadBack(const RunDescription& description, const ReceivedRun& run = Sawtooth()) {
   const auto recording = ParseRecording(Text(description, run), "run.csv");
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   return recording.value_or(Recording());
 }
 
@@ -174,7 +174,7 @@ TEST(RunCsv, ReportsLostSamples) {
   text.replace(text.find("time_s,"), 7, "");
   for (int i = 0; i < 20; ++i) text += std::to_string(500 + i % 7) + "\n";
   const auto recording = ParseRecording(text, "run.csv");
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_DOUBLE_EQ(recording->time[19], 0.095);  // from # sample_rate_hz
   ASSERT_EQ(recording->warnings.size(), 1);
   EXPECT_EQ(recording->warnings[0].code, "lost_samples");
@@ -259,7 +259,7 @@ TEST(StoredCalibration, IsWrittenToAFileAndReadBack) {
 
 TEST(StraightLineOf, KeepsDegrees) {
   const auto line = StraightLineOf(Line(-135.5, 0.2637));
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message();
   EXPECT_EQ(line->offset_deg, -135.5F);
   EXPECT_EQ(line->deg_per_count, 0.2637F);
   EXPECT_EQ(line->offset_variance, 0);
@@ -274,7 +274,7 @@ TEST(StraightLineOf, ConvertsRadiansToDegrees) {
   calibration.covariance.resize(2, 2);
   calibration.covariance << 1, -0.001, -0.001, 2e-6;
   const auto line = StraightLineOf(calibration);
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message();
   EXPECT_FLOAT_EQ(line->offset_deg, -45);
   EXPECT_FLOAT_EQ(line->deg_per_count, 0.25);
   EXPECT_FLOAT_EQ(line->offset_variance, 3282.806F);
@@ -287,7 +287,7 @@ TEST(StraightLineOf, IsReproducedExactly) {
   calibration.covariance.resize(2, 2);
   calibration.covariance << 0.0412, -6.01e-5, -6.01e-5, 1.25e-7;
   const auto line = StraightLineOf(calibration);
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message();
   const auto again = StoredCalibration(Stored(*line));
   ASSERT_TRUE(again);
   EXPECT_EQ(again->coefficients, calibration.coefficients);
@@ -304,8 +304,8 @@ TEST(StraightLineOf, RefusesCalibrationsALoggerCannotStore) {
     ASSERT_FALSE(line);
     EXPECT_EQ(line.error().code, StatusCode::kInvalidArgument);
   }
-  EXPECT_THAT(StraightLineOf(of_volts).error().message, HasSubstr("volts"));
-  EXPECT_THAT(StraightLineOf(curve).error().message, HasSubstr("curve"));
+  EXPECT_THAT(StraightLineOf(of_volts).error().message(), HasSubstr("volts"));
+  EXPECT_THAT(StraightLineOf(curve).error().message(), HasSubstr("curve"));
 }
 
 }  // namespace

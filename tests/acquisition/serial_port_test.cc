@@ -86,7 +86,7 @@ class Cable {
 
 SerialPort Opened(const Cable& cable) {
   auto port = SerialPort::Open(cable.path(), kBaud);
-  EXPECT_TRUE(port) << port.error().message;
+  EXPECT_TRUE(port) << port.error().message();
   return *std::move(port);
 }
 
@@ -95,7 +95,7 @@ Bytes ReadAll(SerialPort& port, std::size_t count) {
   Bytes all;
   while (all.size() < count) {
     const auto bytes = port.Read(kNever);
-    EXPECT_TRUE(bytes) << bytes.error().message;
+    EXPECT_TRUE(bytes) << bytes.error().message();
     if (!bytes || bytes->empty()) break;
     all.insert(all.end(), bytes->begin(), bytes->end());
   }
@@ -125,7 +125,7 @@ TEST(SerialPort, ReadsWithoutALineEnd) {
   cable.Send({0x41});
   const auto begin = Clock::now();
   const auto bytes = port.Read(kNever);
-  ASSERT_TRUE(bytes) << bytes.error().message;
+  ASSERT_TRUE(bytes) << bytes.error().message();
   EXPECT_EQ(*bytes, Bytes({0x41}));
   EXPECT_LT(SecondsSince(begin), kNever / 2);  // does not wait for more
 }
@@ -174,7 +174,7 @@ TEST(SerialPort, WritesMoreThanOneBuffer) {
   std::thread board([&] { received = cable.Received(many.size()); });
   const auto written = port.Write(many);
   board.join();
-  EXPECT_TRUE(written) << written.error().message;
+  EXPECT_TRUE(written) << written.error().message();
   EXPECT_TRUE(received == many);
 }
 
@@ -183,7 +183,7 @@ TEST(SerialPort, RespectsTheTimeout) {
   SerialPort port = Opened(cable);
   const auto begin = Clock::now();
   const auto bytes = port.Read(0.2);
-  ASSERT_TRUE(bytes) << bytes.error().message;
+  ASSERT_TRUE(bytes) << bytes.error().message();
   EXPECT_THAT(*bytes, IsEmpty());
   EXPECT_GE(SecondsSince(begin), 0.19);
   EXPECT_LT(SecondsSince(begin), 100);  // on a busy machine; the unit is not the minute or the millisecond
@@ -220,7 +220,7 @@ TEST(SerialPort, ReportsAPulledCable) {
   const auto bytes = port.Read(kNever);
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(bytes.error().message, HasSubstr(cable.path() + " was disconnected"));
+  EXPECT_THAT(bytes.error().message(), HasSubstr(cable.path() + " was disconnected"));
   const auto written = port.Write(Bytes({1}));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, StatusCode::kDataLoss);
@@ -247,7 +247,7 @@ TEST(SerialPort, TimesOutIfNobodyReads) {
   const auto written = port.Write(Bytes(1000000, 0x55));
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(written.error().message, HasSubstr("accepts no data"));
+  EXPECT_THAT(written.error().message(), HasSubstr("accepts no data"));
 }
 
 Status OpenError(const std::string& path) {
@@ -261,19 +261,19 @@ TEST(SerialPort, IsExclusive) {
   const SerialPort port = Opened(cable);
   const Status error = OpenError(cable.path());
   EXPECT_EQ(error.code, StatusCode::kTryAgain);
-  EXPECT_THAT(error.message, HasSubstr(cable.path() + " is in use by another"));
+  EXPECT_THAT(error.message(), HasSubstr(cable.path() + " is in use by another"));
 }
 
 TEST(SerialPort, ReportsAMissingPort) {
   const Status error = OpenError("/dev/no_such_port");
   EXPECT_EQ(error.code, StatusCode::kNotFound);
-  EXPECT_THAT(error.message, HasSubstr("/dev/no_such_port"));
+  EXPECT_THAT(error.message(), HasSubstr("/dev/no_such_port"));
 }
 
 TEST(SerialPort, RejectsAFileThatIsNotAPort) {
   const Status error = OpenError("/dev/null");
   EXPECT_EQ(error.code, StatusCode::kDataLoss);
-  EXPECT_THAT(error.message, HasSubstr("/dev/null is not a serial port"));
+  EXPECT_THAT(error.message(), HasSubstr("/dev/null is not a serial port"));
   EXPECT_EQ(OpenError(fs::temp_directory_path()).code, StatusCode::kDataLoss);
 }
 

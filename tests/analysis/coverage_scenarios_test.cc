@@ -26,7 +26,7 @@ constexpr double kDegree = kPi / 180;  // rad
 
 CoverageScenario Scenario(const std::string& name) {
   const auto found = FindCoverageScenarios(name);
-  EXPECT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(found) << found.error().message();
   return found->front();
 }
 
@@ -37,7 +37,7 @@ Eigen::VectorXd Motion(SyntheticOptions run) {
   run.rows = RowTiming::kEven;
   run.range.reset();
   const Result<Recording> recording = SimulateRecording(run);
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   return recording->value;
 }
 
@@ -48,14 +48,14 @@ TEST(CoverageScenarios, HaveUniqueNamesAndCanBeSimulated) {
     EXPECT_THAT(scenario.name, testing::MatchesRegex("[a-z0-9_.]+"));
     EXPECT_FALSE(scenario.description.empty());
     const Result<Recording> recording = SimulateRecording(ScenarioRun(scenario, 1));
-    EXPECT_TRUE(recording) << recording.error().message;
+    EXPECT_TRUE(recording) << recording.error().message();
   }
   EXPECT_THAT(names.size(), Ge(15));
 }
 
 TEST(CoverageScenarios, UseTheRigOfTheDatasets) {
   const Result<Rig> rig = ReadRig("datasets/textbook_rig.json");
-  ASSERT_TRUE(rig) << rig.error().message;
+  ASSERT_TRUE(rig) << rig.error().message();
   for (const CoverageScenario& scenario : CoverageScenarios()) {
     ASSERT_TRUE(scenario.fit.rig);
     EXPECT_DOUBLE_EQ(scenario.fit.rig->gravity_torque.value, rig->gravity_torque.value) << scenario.name;
@@ -79,7 +79,7 @@ TEST(CoverageScenarios, MoveForMostOfTheRecordingInTheScenarioToRest) {
 TEST(CoverageScenarios, CutPeaksButNotTheHoldOrLastSwingsInTheScenarioSaturated) {
   const CoverageScenario scenario = Scenario("saturated");
   const Result<Recording> recording = SimulateRecording(ScenarioRun(scenario, 1));
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   const auto at_the_end = [&](Eigen::Index first, Eigen::Index count) {
     int cut = 0;
     for (const double value : recording->value.segment(first, count)) {
@@ -109,7 +109,7 @@ TEST(CoverageScenarios, HaveLaxerRulesOnlyWhereIntended) {
 
 TEST(FindCoverageScenarios, GivesTheNamedScenariosInOrderOrAll) {
   const auto found = FindCoverageScenarios("to_rest,white_0.5");
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message();
   ASSERT_EQ(found->size(), 2);
   EXPECT_EQ(found->front().name, "to_rest");
   EXPECT_EQ(found->back().name, "white_0.5");
@@ -121,9 +121,9 @@ TEST(FindCoverageScenarios, RefusesUnknownAndRepeatedNames) {
     const auto found = FindCoverageScenarios(names);
     ASSERT_FALSE(found) << names;
     EXPECT_EQ(found.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(found.error().message, AllOf(HasSubstr("there is no scenario '"), HasSubstr("white_2.5, white_0.5")));
+    EXPECT_THAT(found.error().message(), AllOf(HasSubstr("there is no scenario '"), HasSubstr("white_2.5, white_0.5")));
   }
-  EXPECT_EQ(FindCoverageScenarios("moving,moving").error().message, "scenario moving is named twice");
+  EXPECT_EQ(FindCoverageScenarios("moving,moving").error().message(), "scenario moving is named twice");
 }
 
 TEST(ScenarioRun, DrawsZeroAndReleaseUniformly) {

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 CoverageScenario Scenario(const std::string& name) {
   const auto found = FindCoverageScenarios(name);
-  EXPECT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(found) << found.error().message();
   return found->front();
 }
 
@@ -29,7 +29,7 @@ CoverageOptions Options(int count) {
 
 CoverageStudy Study(const CoverageScenario& scenario, const CoverageOptions& options) {
   const Result<CoverageStudy> study = StudyCoverage(scenario, options);
-  EXPECT_TRUE(study) << study.error().message;
+  EXPECT_TRUE(study) << study.error().message();
   return *study;
 }
 
@@ -224,11 +224,11 @@ TEST(StudyCoverage, RefusesImpossibleSimulations) {
   scenario.run.noise = -1;
   const auto study = StudyCoverage(scenario, Options(3));
   ASSERT_FALSE(study);
-  EXPECT_THAT(study.error().message, HasSubstr("noise is -1"));
-  EXPECT_EQ(StudyCoverage(Scenario("moving"), Options(0)).error().message, "count is 0; it must be at least 1");
+  EXPECT_THAT(study.error().message(), HasSubstr("noise is -1"));
+  EXPECT_EQ(StudyCoverage(Scenario("moving"), Options(0)).error().message(), "count is 0; it must be at least 1");
   CoverageOptions options = Options(1);
   options.threads = -1;
-  EXPECT_EQ(StudyCoverage(Scenario("moving"), options).error().message, "threads is -1; it must be 0 or more");
+  EXPECT_EQ(StudyCoverage(Scenario("moving"), options).error().message(), "threads is -1; it must be 0 or more");
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST(FitModels, RefusesAnUnknownParameter) {
   const auto fitted = FitModels(recording, Whole(recording), options, {"viscous", "coulomb"});
   ASSERT_FALSE(fitted);
   EXPECT_EQ(fitted.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(fitted.error().message, HasSubstr("lubrication"));
+  EXPECT_THAT(fitted.error().message(), HasSubstr("lubrication"));
 }
 
 TEST(ForModel, KeepsOptionsTheModelHas) {

@@ -301,7 +301,7 @@ TEST(MakePlan, NeedsNoiseOrAResolution) {
   const Result<Plan> plan = MakePlan(run);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(plan.error().message, HasSubstr("noise and resolution are both 0"));
+  EXPECT_THAT(plan.error().message(), HasSubstr("noise and resolution are both 0"));
 }
 
 TEST(MakePlan, NeedsARecording) {

@@ -190,7 +190,7 @@ TEST(ReadingsAt, RefuseValuesWithoutAMotion) {
     const auto readings = ReadingsAt(run.recording, run.fit, run.rig, {{name, value}});
     if (readings) return name + " is accepted";
     EXPECT_EQ(readings.error().code, StatusCode::kInvalidArgument);
-    return readings.error().message;
+    return readings.error().message();
   };
   EXPECT_THAT(message("inertia", 0), StartsWith("inertia is 0 kg m^2; it must be at least 0.0007"));
   EXPECT_THAT(message("inertia", -0.1), StartsWith("inertia is -0.1 kg m^2; it must be at least"));
@@ -214,7 +214,7 @@ TEST(ReadingsAt, EndAtAStop) {
   const auto readings = ReadingsAt(run.recording, run.fit, run.rig, {{"initial_rate", 1e5}}, stop.get_token());
   ASSERT_FALSE(readings);
   EXPECT_EQ(readings.error().code, StatusCode::kTryAgain);
-  EXPECT_EQ(readings.error().message, "the readings were stopped before the motion was computed");
+  EXPECT_EQ(readings.error().message(), "the readings were stopped before the motion was computed");
 }
 
 TEST(ReadingsAt, NeedEstimates) {
@@ -224,7 +224,7 @@ TEST(ReadingsAt, NeedEstimates) {
   const auto readings = ReadingsAt(run.recording, run.fit, run.rig, {});
   ASSERT_FALSE(readings);
   EXPECT_EQ(readings.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(readings.error().message, "the fit of model coulomb has no estimates: friction holds it");
+  EXPECT_EQ(readings.error().message(), "the fit of model coulomb has no estimates: friction holds it");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST_F(ReadFileTest, RefusesMoreThanTheAllowedBytes) {
   const auto refused = ReadFile(path_, "rig", 4);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(refused.error().message, HasSubstr("run.csv: the file has more than 4 bytes, too many for a rig file"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("run.csv: the file has more than 4 bytes, too many for a rig file"));
 }
 
 TEST_F(ReadFileTest, ReportsAnUnreadableFile) {
@@ -57,14 +57,14 @@ TEST_F(ReadFileTest, ReportsAnUnreadableFile) {
   const auto refused = ReadFile("/proc/self/mem", "CSV", 1000);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(refused.error().message, "/proc/self/mem: the file cannot be read; check its permissions");
+  EXPECT_EQ(refused.error().message(), "/proc/self/mem: the file cannot be read; check its permissions");
 }
 
 TEST_F(ReadFileTest, ReportsAMissingFile) {
-  EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().message,
+  EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().message(),
             "/nowhere/run.csv: there is no such file; check the path");
   EXPECT_EQ(ReadFile("/nowhere/run.csv", "CSV", 9).error().code, StatusCode::kNotFound);
-  EXPECT_THAT(ReadFile(folder_, "CSV", 9).error().message, HasSubstr("this is a directory; name a CSV file in it"));
+  EXPECT_THAT(ReadFile(folder_, "CSV", 9).error().message(), HasSubstr("this is a directory; name a CSV file in it"));
   EXPECT_EQ(ReadFile(folder_, "CSV", 9).error().code, StatusCode::kDataLoss);
 }
 

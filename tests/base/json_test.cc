@@ -16,7 +16,7 @@ std::string FaultOf(const std::string& text) {
   EXPECT_FALSE(json.has_value()) << text;
   if (json) return "";
   EXPECT_EQ(json.error().code, StatusCode::kDataLoss);
-  return json.error().message;
+  return json.error().message();
 }
 
 TEST(ParseJsonObject, KeepsTheOrderOfTheKeys) {
@@ -69,7 +69,7 @@ TEST(ParseJsonObject, RefusesTooMuchDepthOrTooManyKeys) {
   const auto refused = ParseJsonObject(deep, "rig.json", "rig", "{}");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(refused.error().message, testing::HasSubstr("more than 32 nested brackets"));
+  EXPECT_THAT(refused.error().message(), testing::HasSubstr("more than 32 nested brackets"));
   std::string keys = "{";
   for (int i = 0; i <= 4100; ++i) keys += (i == 0 ? "\"k" : ",\"k") + std::to_string(i) + "\":1";
   EXPECT_FALSE(ParseJsonObject(keys + "}", "rig.json", "rig", "{}"));

@@ -74,7 +74,7 @@ TEST_F(StagedFileTest, ReportsTheSystemsErrorIfUnwritable) {
   const Result<void> opened = StagedFile(folder_ / "nowhere" / "result").Open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(opened.error().message, HasSubstr("nowhere/result: No such file or directory"));
+  EXPECT_THAT(opened.error().message(), HasSubstr("nowhere/result: No such file or directory"));
 }
 
 }  // namespace

@@ -29,16 +29,29 @@ TEST(Error, ConvertsToAResultOfAnyType) {
   ASSERT_FALSE(number);
   ASSERT_FALSE(words);
   EXPECT_EQ(number.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(number.error().message, "swing.csv:3: no number");
+  EXPECT_EQ(number.error().message(), "swing.csv:3: no number");
   EXPECT_EQ(words.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(words.error().message, "swing.csv: no such file");
+  EXPECT_EQ(words.error().message(), "swing.csv: no such file");
+}
+
+TEST(Error, BeginsItsMessageWithItsPlace) {
+  const Result<int> number = Fault("swing.csv:3", "no number");
+  EXPECT_EQ(number.error().code, StatusCode::kDataLoss);
+  EXPECT_EQ(number.error().message(), "swing.csv:3: no number");
+  EXPECT_EQ(ErrorAt(StatusCode::kNotFound, "", "no such file").value().message(), "no such file");
+}
+
+TEST(Within, PutsTheOuterPlaceFirst) {
+  const Status part{StatusCode::kDataLoss, "no number"};
+  EXPECT_EQ(Within("", part).value().message(), "no number");
+  EXPECT_EQ(Within("run.csv", part).value().message(), "run.csv: no number");
+  EXPECT_EQ(Within("run.csv", Within("column a", part).value()).value().message(), "run.csv: column a: no number");
 }
 
 TEST(WithTry, AddsFlagsThatAPartKeeps) {
   const Result<int> part = WithTry(Error(StatusCode::kDataLoss, "no unit"), {"--unit deg"});
-  const Result<double> whole = WithMessage(part.error(), "run.csv: no unit");
+  const Result<double> whole = Within("run.csv", part.error());
   EXPECT_EQ(whole.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(whole.error().message, "run.csv: no unit");
   EXPECT_THAT(whole.error().try_flags, testing::ElementsAre("--unit deg"));
 }
 

@@ -36,15 +36,15 @@ TEST(ReturnIfError, PassesTheWholeErrorOn) {
   const auto failed = Pair(false);
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(failed.error().message, "wrong");
+  EXPECT_EQ(failed.error().message(), "wrong");
   EXPECT_EQ(failed.error().try_flags, std::vector<std::string>{"--right"});
   EXPECT_TRUE(Pair(true));
 }
 
 TEST(AssignOrReturn, GivesTheValueOrPassesTheErrorOn) {
   EXPECT_EQ(Text(true, true).value(), "12");
-  EXPECT_EQ(Text(false, true).error().message, "wrong");
-  EXPECT_EQ(Text(true, false).error().message, "wrong");
+  EXPECT_EQ(Text(false, true).error().message(), "wrong");
+  EXPECT_EQ(Text(true, false).error().message(), "wrong");
 }
 
 TEST(AssignOrReturn, EvaluatesItsExpressionOnce) {

@@ -75,7 +75,7 @@ class CompareStoresTest : public testing::Test {
   StoreComparison Compare(const std::vector<Fit>& before, const std::vector<Fit>& after) const {
     Store first = Make("before.sqlite", before), second = Make("after.sqlite", after);
     const auto comparison = CompareStores(first, second);
-    EXPECT_TRUE(comparison) << comparison.error().message;
+    EXPECT_TRUE(comparison) << comparison.error().message();
     return comparison.value_or(StoreComparison());
   }
 

@@ -63,7 +63,7 @@ inline RunOutcome UnfittedOutcome() {
   RunOutcome outcome;
   outcome.provenance = {"", "rig", "", "options", "0.1.0", "cpu"};
   outcome.exit_code = 3;
-  outcome.reason = "none.csv: there is no such file; check the path";
+  outcome.reason = {"none.csv", "there is no such file; check the path"};
   outcome.models = {"viscous", "coulomb"};
   return outcome;
 }
@@ -72,7 +72,7 @@ inline RunOutcome UnfittedOutcome() {
 inline Store StoreOf(const std::string& path, const Source& source) {
   Store store = Store::Open(path, Store::Mode::kWrite).value();
   const auto begun = store.Begin(source, std::nullopt, "{}");
-  EXPECT_TRUE(begun) << begun.error().message;
+  EXPECT_TRUE(begun) << begun.error().message();
   return store;
 }
 

@@ -85,7 +85,7 @@ std::vector<Json> LinesOf(Store& store) {
     text += piece;
     return {};
   });
-  EXPECT_TRUE(exported) << exported.error().message;
+  EXPECT_TRUE(exported) << exported.error().message();
   std::vector<Json> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(Json::parse(line));
@@ -98,7 +98,7 @@ std::string CsvOf(Store& store) {
     text += piece;
     return {};
   });
-  EXPECT_TRUE(exported) << exported.error().message;
+  EXPECT_TRUE(exported) << exported.error().message();
   return text;
 }
 
@@ -154,7 +154,7 @@ TEST_F(ExportTest, ContainsTheErrorOfARunWithoutAResult) {
   const auto lines = LinesOf(store);
   ASSERT_EQ(lines.size(), 1);
   EXPECT_TRUE(lines[0]["result"].is_null());
-  EXPECT_EQ(lines[0]["error"], Json({{"exit_code", 3}, {"message", UnfittedOutcome().reason}}));
+  EXPECT_EQ(lines[0]["error"], Json({{"exit_code", 3}, {"message", UnfittedOutcome().reason.text()}}));
 }
 
 TEST_F(ExportTest, SaysWhichFitsAreStale) {
@@ -197,7 +197,7 @@ TEST_F(ExportTest, StopsIfTheSinkReturnsAnError) {
     });
     ASSERT_FALSE(exported);
     EXPECT_EQ(exported.error().code, StatusCode::kCannotWrite);
-    EXPECT_EQ(exported.error().message, "full");
+    EXPECT_EQ(exported.error().message(), "full");
     EXPECT_EQ(pieces, 1);
   }
 }
@@ -209,7 +209,7 @@ TEST_F(ExportTest, ReportsADamagedStore) {
   const auto exported = ExportJsonLines(store, [](std::string_view) -> Result<void> { return {}; });
   ASSERT_FALSE(exported);
   EXPECT_EQ(exported.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(exported.error().message, StartsWith(store.name() + ": the file is damaged ("));
+  EXPECT_THAT(exported.error().message(), StartsWith(store.name() + ": the file is damaged ("));
 }
 
 // ---- CSV -----------------------------------------------------------------------------------------------------------
@@ -254,7 +254,7 @@ TEST_F(ExportTest, WritesFailedRunsToo) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(rows[i].at("id"), "a");
     EXPECT_EQ(rows[i].at("status"), "failed");
-    EXPECT_EQ(rows[i].at("reason"), UnfittedOutcome().reason);
+    EXPECT_EQ(rows[i].at("reason"), UnfittedOutcome().reason.text());
     EXPECT_EQ(rows[i].at("inertia") + rows[i].at("inertia_unit") + rows[i].at("aicc"), "");
   }
 }

@@ -40,7 +40,7 @@ class FindRecordingsTest : public testing::Test {
   /// The paths that a pattern finds in the folder, relative to it.
   std::vector<std::string> Find(const std::string& pattern) const {
     auto found = FindRecordings((folder_ / pattern).string());
-    EXPECT_TRUE(found) << found.error().message;
+    EXPECT_TRUE(found) << found.error().message();
     if (!found) return {};
     for (std::string& path : found->paths) {
       EXPECT_TRUE(path.starts_with(folder_.string() + "/")) << path;
@@ -66,7 +66,7 @@ TEST_F(FindRecordingsTest, LeavesOutManifestsAndExportsInAFolder) {
   Write("paths.txt", "path\nrun.csv\n");
   Write("results.csv", "id,path,rig,calibration,model\n");
   const auto found = FindRecordings(folder_.string());
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message();
   EXPECT_THAT(found->paths, ElementsAre((folder_ / "run.csv").string()));
   EXPECT_EQ(found->lists.size(), 3U);
   EXPECT_TRUE(found->left_out.empty());
@@ -192,13 +192,13 @@ TEST_F(FindRecordingsTest, ReportsPathsAndPatternsThatAreNotFound) {
   Make({"a/b.json"});
   const std::string folder = folder_.string();
   EXPECT_EQ(FaultOf("none.csv").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("none.csv").message, folder + "/none.csv: there is no such file or folder; check the path");
+  EXPECT_EQ(FaultOf("none.csv").message(), folder + "/none.csv: there is no such file or folder; check the path");
   EXPECT_EQ(FaultOf("a").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("a").message,
+  EXPECT_EQ(FaultOf("a").message(),
             folder + "/a: there is no " + RecordingNames() + " file in this folder or below it; check the path");
   EXPECT_EQ(FaultOf("*/*.csv").code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf("*/*.csv").message, folder + "/*/*.csv: no file matches this pattern; check the path");
-  EXPECT_EQ(FaultOf("none/**/x").message, folder + "/none/**/x: no file matches this pattern; check the path");
+  EXPECT_EQ(FaultOf("*/*.csv").message(), folder + "/*/*.csv: no file matches this pattern; check the path");
+  EXPECT_EQ(FaultOf("none/**/x").message(), folder + "/none/**/x: no file matches this pattern; check the path");
 }
 
 TEST_F(FindRecordingsTest, RefusesAnUnreadableFolder) {
@@ -213,7 +213,7 @@ TEST_F(FindRecordingsTest, RefusesAnUnreadableFolder) {
   for (const char* pattern : {"locked", "", "*/*.csv", "**/*.csv"}) {
     EXPECT_EQ(FaultOf(pattern).code, StatusCode::kDataLoss) << pattern;
     EXPECT_EQ(
-        FaultOf(pattern).message,
+        FaultOf(pattern).message(),
         (folder_ / "locked").string() + ": this folder cannot be read; check its permissions, or name another folder");
   }
   EXPECT_THAT(Find("a/*.csv"), ElementsAre("a/x.csv"));

@@ -38,7 +38,7 @@ class FitStoreFolder : public testing::Test {
   void Open() {
     store_.reset();
     auto store = FitStore::Open(path_);
-    ASSERT_TRUE(store) << store.error().message;
+    ASSERT_TRUE(store) << store.error().message();
     store_ = *std::move(store);
   }
 

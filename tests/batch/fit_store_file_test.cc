@@ -47,7 +47,7 @@ class FitStoreFileTest : public fit_orders::FitStoreFolder {
  protected:
   void Add(const std::string& id) {
     const auto added = Store().Add(OrderOf(id), Outcome(), std::nullopt);
-    ASSERT_TRUE(added) << added.error().message;
+    ASSERT_TRUE(added) << added.error().message();
   }
 
   /// The ids in a copy of the current files on disk: the worst state after a loss of power.
@@ -57,7 +57,7 @@ class FitStoreFileTest : public fit_orders::FitStoreFolder {
       if (fs::exists(path_ + end)) fs::copy_file(path_ + end, (other / "fits.sqlite").string() + end);
     }
     const auto store = FitStore::Open(other / "fits.sqlite");
-    EXPECT_TRUE(store) << store.error().message;
+    EXPECT_TRUE(store) << store.error().message();
     return store ? IdsOf((*store)->List({}).value()) : std::vector<std::string>();
   }
 };
@@ -132,7 +132,7 @@ TEST_F(FitStoreFileTest, ExcludesOtherWriters) {
   const auto other = FitStore::Open(path_);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kTryAgain);
-  EXPECT_EQ(other.error().message, path_ + ": another process writes to this file; try again when it is done");
+  EXPECT_EQ(other.error().message(), path_ + ": another process writes to this file; try again when it is done");
   Close();
   EXPECT_TRUE(FitStore::Open(path_));
 }
@@ -157,7 +157,7 @@ TEST_F(FitStoreFileTest, OpensWhileAnotherProcessReads) {
   ASSERT_TRUE(rows.executeStep());
   Close();
   const auto again = FitStore::Open(path_);
-  ASSERT_TRUE(again) << again.error().message;
+  ASSERT_TRUE(again) << again.error().message();
   ASSERT_TRUE((*again)->Add(OrderOf("b"), Outcome(), std::nullopt));
   EXPECT_FALSE(rows.executeStep());
   EXPECT_THAT(IdsOf((*again)->List({}).value()), ElementsAre("b", "a"));
@@ -167,7 +167,7 @@ TEST_F(FitStoreFileTest, ReportsAPathThatCannotBeCreated) {
   const auto store = FitStore::Open(folder_ / "nowhere" / "fits.sqlite");
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(store.error().message, StartsWith("cannot write " + (folder_ / "nowhere").string()));
+  EXPECT_THAT(store.error().message(), StartsWith("cannot write " + (folder_ / "nowhere").string()));
 }
 
 TEST_F(FitStoreFileTest, RejectsOtherFiles) {
@@ -175,7 +175,7 @@ TEST_F(FitStoreFileTest, RejectsOtherFiles) {
   const auto store = FitStore::Open(path_);
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(store.error().message, path_ + ": this is not an SQLite file; name an SQLite file");
+  EXPECT_EQ(store.error().message(), path_ + ": this is not an SQLite file; name an SQLite file");
   EXPECT_THAT(folder_.Names(), ElementsAre("fits.sqlite"));
 }
 
@@ -185,7 +185,7 @@ TEST_F(FitStoreFileTest, ReportsDamage) {
   const auto kept = Store().Find("a");
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(kept.error().message, StartsWith(path_ + ": the file is damaged ("));
+  EXPECT_THAT(kept.error().message(), StartsWith(path_ + ": the file is damaged ("));
 }
 
 // ---- Older stores, and stores of refit_pendulums -------------------------------------------------------------------
@@ -206,7 +206,7 @@ void MakeFirstVersion(const std::string& path) {
 TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   MakeFirstVersion(path_);
   Add("new");
-  EXPECT_EQ(NumberOutside("PRAGMA user_version"), 7);
+  EXPECT_EQ(NumberOutside("PRAGMA user_version"), 8);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = 'old' AND exit_code = 0"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM quantities WHERE name = 'hysteresis'"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE json_extract(result, '$.schema_version') = 3 AND "
@@ -230,7 +230,7 @@ TEST_F(FitStoreFileTest, UpdatesAStoreOfAServiceWithoutNames) {
         "INSERT INTO requests VALUES(1, NULL, '2026-11-23T21:40:05Z', '{}', 1, NULL, NULL)");
   }
   const auto fits = Store().List({});
-  ASSERT_TRUE(fits) << fits.error().message;
+  ASSERT_TRUE(fits) << fits.error().message();
   ASSERT_THAT(IdsOf(*fits), ElementsAre("old"));
   EXPECT_EQ(fits->at(0).name, "");
   EXPECT_EQ(fits->at(0).ShownName(), "old.csv");
@@ -246,7 +246,7 @@ TEST_F(FitStoreFileTest, KeepsItsRunsIfAManifestIsRefittedIntoTheSameFile) {
   Close();
   {
     auto store = pendulum::Store::Open(path_, pendulum::Store::Mode::kWrite);
-    ASSERT_TRUE(store) << store.error().message;
+    ASSERT_TRUE(store) << store.error().message();
     ASSERT_TRUE(store->Begin(example_runs::SourceOfIds({"of_the_manifest"}), std::nullopt, "{}"));
   }
   Open();
@@ -295,7 +295,7 @@ TEST_F(FitStoreFileTest, ReportsAFullDiskAndContinuesLater) {
     const auto refused = Store().Add(LargeOrder("b"), Outcome(), RequestKey{"key", "sha"});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, StatusCode::kCannotWrite);
-    EXPECT_THAT(refused.error().message, StartsWith("cannot write " + path_ + ": "));
+    EXPECT_THAT(refused.error().message(), StartsWith("cannot write " + path_ + ": "));
     EXPECT_THAT(IdsOf(Store().List({}).value()), ElementsAre("a"));
   }
   Add("c");
@@ -319,7 +319,7 @@ TEST_F(FitStoreFileTest, RecoversFromAFullDiskAtOnce) {
     refusals += is_kept ? 0 : 1;
     EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = '" + id + "'"), is_kept ? 1 : 0);
     const auto next = Store().Add(OrderOf("next_" + id), Outcome(), std::nullopt);
-    ASSERT_TRUE(next) << room << ": " << next.error().message;
+    ASSERT_TRUE(next) << room << ": " << next.error().message();
   }
   EXPECT_GT(refusals, 0);
 }

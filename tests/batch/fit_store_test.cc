@@ -34,19 +34,19 @@ class FitStoreTest : public fit_orders::FitStoreFolder {
  protected:
   void Add(const FitOrder& order, const RunOutcome& outcome = OutcomeOf({FitOf("viscous", 2)})) {
     const auto added = Store().Add(order, outcome, std::nullopt);
-    ASSERT_TRUE(added) << added.error().message;
+    ASSERT_TRUE(added) << added.error().message();
   }
 
   void Add(const std::string& id) { Add(OrderOf(id)); }
 
   void AddBatch(const std::string& id, const std::vector<std::string>& runs) {
     const auto added = Store().AddBatch(id, kCreated, OrdersOf(runs), std::nullopt);
-    ASSERT_TRUE(added) << added.error().message;
+    ASSERT_TRUE(added) << added.error().message();
   }
 
   std::vector<std::string> Listed(const FitFilter& filter) {
     const auto fits = Store().List(filter);
-    EXPECT_TRUE(fits) << fits.error().message;
+    EXPECT_TRUE(fits) << fits.error().message();
     return fits ? IdsOf(*fits) : std::vector<std::string>();
   }
 
@@ -70,7 +70,7 @@ template <typename T>
 void ExpectUnknown(const Result<T>& result, const std::string& what) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(result.error().message, "there is no " + what + "; it may have been deleted");
+  EXPECT_EQ(result.error().message(), "there is no " + what + "; it may have been deleted");
 }
 
 // ---- One run -------------------------------------------------------------------------------------------------------
@@ -84,7 +84,7 @@ TEST_F(FitStoreTest, KeepsARunWithAllItsInputs) {
   const RunOutcome outcome = OutcomeOf({FitOf("drag", 1.0 / 3), FitOf("viscous", 7)}, "drag");
   Add(order, outcome);
   const auto kept = Store().Find("a");
-  ASSERT_TRUE(kept) << kept.error().message;
+  ASSERT_TRUE(kept) << kept.error().message();
   EXPECT_EQ(kept->fit.id, "a");
   EXPECT_EQ(kept->fit.file, "swing, the first.csv");
   EXPECT_EQ(kept->fit.ShownName(), "swing, the first.csv");
@@ -106,7 +106,7 @@ TEST_F(FitStoreTest, KeepsARunWithAllItsInputs) {
 TEST_F(FitStoreTest, StoresNoFileThatWasNotSent) {
   Add("a");
   const auto kept = Store().Find("a");
-  ASSERT_TRUE(kept) << kept.error().message;
+  ASSERT_TRUE(kept) << kept.error().message();
   EXPECT_FALSE(kept->order.files.rig);
   EXPECT_FALSE(kept->order.files.calibration);
 }
@@ -129,7 +129,7 @@ TEST_F(FitStoreTest, AcceptsAnIdOnlyOnce) {
   const auto again = Store().Add(OrderOf("a"), OutcomeOf({}), std::nullopt);
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().code, StatusCode::kInternal);
-  EXPECT_THAT(again.error().message, StartsWith(path_ + ": "));
+  EXPECT_THAT(again.error().message(), StartsWith(path_ + ": "));
   Add("b");  // the refused run does not block others
   EXPECT_THAT(Listed({}), ElementsAre("b", "a"));
 }
@@ -140,7 +140,7 @@ TEST_F(FitStoreTest, ListsTheLatestFirstWithTheirModels) {
   Add(OrderOf("a"), OutcomeOf({FitOf("coulomb", 0.5), FitOf("drag", 2, "not_converged")}, "coulomb"));
   Add("b");
   const auto fits = Store().List({});
-  ASSERT_TRUE(fits) << fits.error().message;
+  ASSERT_TRUE(fits) << fits.error().message();
   ASSERT_THAT(IdsOf(*fits), ElementsAre("b", "a"));
   const ListedFit& fit = fits->back();
   EXPECT_EQ(fit.name, "");
@@ -170,7 +170,7 @@ TEST_F(FitStoreTest, ListsTheWindowAndTheTotalError) {
   SQLite::Database(path_, SQLite::OPEN_READWRITE)
       .exec("UPDATE quantities SET std_error = 0.3, systematic_std_error = 0.4 WHERE name = 'inertia'");
   const auto fits = Store().List({});
-  ASSERT_TRUE(fits) << fits.error().message;
+  ASSERT_TRUE(fits) << fits.error().message();
   EXPECT_EQ(fits->at(1).window, (std::array{1.25, 46.5}));
   EXPECT_EQ(fits->at(0).window, std::nullopt);
   EXPECT_DOUBLE_EQ(fits->at(1).models.at(0).parameters.at(0).total_std_error.value(), 0.5);  // 3, 4, 5
@@ -222,7 +222,7 @@ TEST_F(FitStoreTest, ListsAdjacentPages) {
   FitFilter filter;
   filter.limit = 2;
   const auto first = Store().List(filter);
-  ASSERT_TRUE(first) << first.error().message;
+  ASSERT_TRUE(first) << first.error().message();
   EXPECT_THAT(IdsOf(*first), ElementsAre("e", "d"));
   filter.before = first->back().run;
   EXPECT_THAT(Listed(filter), ElementsAre("c", "b"));
@@ -253,7 +253,7 @@ TEST_F(FitStoreTest, FindsRunsByAPartOfTheirName) {
 TEST_F(FitStoreTest, FiltersByModelAndStatusOfTheSameFit) {
   Add(OrderOf("a"), OutcomeOf({FitOf("viscous", 1), FitOf("coulomb", 1, "not_converged")}));
   Add(OrderOf("b"), OutcomeOf({FitOf("drag", 1)}));
-  Add(OrderOf("c"), FailureOf("no swing", 5));
+  Add(OrderOf("c"), FailureOf({"", "no swing"}, 5));
   const auto listed = [&](const std::string& model, const std::string& status) {
     FitFilter filter;
     filter.model = model;
@@ -326,17 +326,17 @@ TEST_F(FitStoreTest, ProcessesABatchInOrder) {
   AddBatch("first", {"z", "a"});
   AddBatch("second", {"m"});
   EXPECT_THAT(Waiting(), ElementsAre("first/z", "first/a", "second/m"));
-  ASSERT_TRUE(Store().Put("z", FailureOf("z.csv: no swing", 5)));
+  ASSERT_TRUE(Store().Put("z", FailureOf({"z.csv", "no swing"}, 5)));
   ASSERT_TRUE(Store().Put("m", OutcomeOf({FitOf("viscous", 1)})));
   EXPECT_THAT(Waiting(), ElementsAre("first/a"));
   const auto runs = Store().RunsOf("first");
-  ASSERT_TRUE(runs) << runs.error().message;
+  ASSERT_TRUE(runs) << runs.error().message();
   EXPECT_THAT(IdsOf(*runs), ElementsAre("z", "a"));
   EXPECT_EQ(runs->front().exit_code, 5);
   EXPECT_EQ(runs->front().reason, "z.csv: no swing");
   EXPECT_EQ(runs->back().exit_code, std::nullopt);
   const auto batch = Store().FindBatch("first");
-  ASSERT_TRUE(batch) << batch.error().message;
+  ASSERT_TRUE(batch) << batch.error().message();
   EXPECT_EQ(batch->created, kCreated);
   EXPECT_EQ(batch->runs, 2);
   EXPECT_EQ(batch->done, 1);

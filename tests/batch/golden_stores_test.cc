@@ -181,13 +181,27 @@ TEST_F(GoldenStoresTest, AreUpgradedWithoutLoss) {
   for (int version = 1; version <= kVersions; ++version) {
     const fs::path path = Make(version, "golden.sqlite");
     auto store = Store::Open(path, Store::Mode::kWrite);
-    ASSERT_TRUE(store) << store.error().message;
+    ASSERT_TRUE(store) << store.error().message();
     const auto summary = Summarize(*store, {});
-    ASSERT_TRUE(summary) << summary.error().message;
+    ASSERT_TRUE(summary) << summary.error().message();
     EXPECT_EQ(summary->headline.fitted, 1);
     EXPECT_EQ(summary->headline.missing, 1);
+    EXPECT_EQ(summary->headline.missing_runs.at(0).reason, "there is no such file; check the path");
     ExpectPresent(path, version);
   }
+}
+
+TEST_F(GoldenStoresTest, SeparateReasonsFromTheirPlaces) {
+  const fs::path path = Make(7, "golden.sqlite");
+  SQLite::Database(path.string(), SQLite::OPEN_READWRITE)
+      .exec(
+          "UPDATE runs SET stale = 'run.csv: the recording has become shorter' WHERE id = 'a';"
+          "UPDATE runs SET reason = 'none.csv:3:5: \"x\" is not a number' WHERE id = 'b';"
+          "UPDATE runs SET reason = 'rig.json: there is no such file' WHERE id = 'c'");
+  ASSERT_TRUE(Store::Open(path, Store::Mode::kWrite));
+  EXPECT_THAT(Rows(path, "SELECT id, place, sentence FROM runs ORDER BY run"),
+              testing::ElementsAre("a|run.csv|the recording has become shorter", "b|none.csv:3:5|\"x\" is not a number",
+                                   "c|NULL|NULL"));
 }
 
 TEST_F(GoldenStoresTest, AreReadFromAFullDisk) {
@@ -216,7 +230,7 @@ TEST_F(GoldenStoresTest, AreRefusedAndUnchangedIfThereIsNoRoomForACopyEither) {
   if (child == 0) {
     FillDisk();
     const auto store = Store::Open(path, Store::Mode::kRead);
-    const bool is_named = !store && store.error().message.starts_with("cannot write " + path.string() + ": ");
+    const bool is_named = !store && store.error().message().starts_with("cannot write " + path.string() + ": ");
     ::_exit(is_named ? ExitCode(store.error().code) : EXIT_FAILURE);
   }
   int status = 0;

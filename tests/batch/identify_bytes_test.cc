@@ -54,11 +54,11 @@ TEST(IdentifyBytes, EqualsTheFitOfTheFiles) {
   const IdentifyOptions options = OptionsFor({"viscous", "coulomb"});
   const std::string data = "datasets/textbook_rig.csv", rig = "datasets/textbook_rig.json";
   const auto from_bytes = IdentifyBytes(options, {{data, FileText(data)}, Share({rig, FileText(rig)}), {}});
-  ASSERT_TRUE(from_bytes) << from_bytes.error().message;
+  ASSERT_TRUE(from_bytes) << from_bytes.error().message();
   auto one = PrepareFile(data, options, ReadRig(rig).value());
-  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_TRUE(one) << one.error().message();
   const auto from_files = IdentifyEach(options, *std::move(one));
-  ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
+  ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message();
   EXPECT_EQ(ToJson(*from_bytes).dump(2), ToJson(*from_files[0]).dump(2));
   EXPECT_EQ(from_bytes->recordings.front().used.time, from_files[0]->recordings.front().used.time);
 }
@@ -70,12 +70,12 @@ TEST(IdentifyBytes, EqualsTheFitOfTheFilesWithACalibration) {
   IdentifyOptions options = OptionsFor({"viscous"});
   const std::string data = folder / "counts.csv";
   const auto from_bytes = IdentifyBytes(options, {{data, CountsText()}, {}, Share({"calibration", kCalibration})});
-  ASSERT_TRUE(from_bytes) << from_bytes.error().message;
+  ASSERT_TRUE(from_bytes) << from_bytes.error().message();
   options.read.calibration = ReadCalibration(folder / "calibration.json").value();
   auto one = PrepareFile(data, options, std::nullopt);
-  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_TRUE(one) << one.error().message();
   const auto from_files = IdentifyEach(options, *std::move(one));
-  ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message;
+  ASSERT_TRUE(from_files.at(0)) << from_files[0].error().message();
   EXPECT_EQ(ToJson(*from_bytes).dump(2), ToJson(*from_files[0]).dump(2));
 }
 
@@ -84,13 +84,13 @@ TEST(IdentifyBytes, NamesTheFaultyFileAndPlace) {
   const std::string good = small_batch::RecordingText(1);
   const Status data = FaultOf(options, {{"a.csv", "time_s,angle_rad\n0,1\n0.1,soon\n0.2,1\n"}, {}, {}});
   EXPECT_EQ(data.code, StatusCode::kDataLoss);
-  EXPECT_THAT(data.message, StartsWith("a.csv:3:5: "));
+  EXPECT_THAT(data.message(), StartsWith("a.csv:3:5: "));
   const Status rig = FaultOf(options, {{"a.csv", good}, Share({"my rig", "{"}), {}});
   EXPECT_EQ(rig.code, StatusCode::kDataLoss);
-  EXPECT_THAT(rig.message, StartsWith("my rig:1:"));
+  EXPECT_THAT(rig.message(), StartsWith("my rig:1:"));
   const Status calibration = FaultOf(options, {{"a.csv", good}, {}, Share({"cal", "[]"})});
   EXPECT_EQ(calibration.code, StatusCode::kDataLoss);
-  EXPECT_THAT(calibration.message, StartsWith("cal: "));
+  EXPECT_THAT(calibration.message(), StartsWith("cal: "));
 }
 
 TEST(IdentifyBytes, ReportsThatNothingSwings) {
@@ -98,7 +98,7 @@ TEST(IdentifyBytes, ReportsThatNothingSwings) {
   for (int i = 0; i < 100; ++i) rest += std::to_string(i) + ",0\n";
   const Status fault = FaultOf(OptionsFor({"viscous"}), {{"rest.csv", rest}, {}, {}});
   EXPECT_EQ(fault.code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(fault.message, HasSubstr("no swing"));
+  EXPECT_THAT(fault.message(), HasSubstr("no swing"));
 }
 
 }  // namespace

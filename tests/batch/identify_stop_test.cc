@@ -38,7 +38,7 @@ Result<Identification> FitFirst(const IdentifyOptions& options, const PreparedRe
 void ExpectStopped(const Result<Identification>& run) {
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kTryAgain);
-  EXPECT_THAT(run.error().message, HasSubstr("the fit was stopped before it was done; "));
+  EXPECT_THAT(run.error().message(), HasSubstr("the fit was stopped before it was done; "));
 }
 
 /// Stops a run at `count` instants spread evenly over its duration. The result must equal the result of a complete run
@@ -118,7 +118,7 @@ TEST(StoppedFitRuns, NameEachOfSeveralSwings) {
   ASSERT_THAT(runs, SizeIs(2));
   for (const auto& [index, name] : {std::pair(0, "two.csv: free swing 1: "), std::pair(1, "two.csv: free swing 2: ")}) {
     ExpectStopped(runs[static_cast<std::size_t>(index)]);
-    EXPECT_THAT(runs[static_cast<std::size_t>(index)].error().message, StartsWith(name));
+    EXPECT_THAT(runs[static_cast<std::size_t>(index)].error().message(), StartsWith(name));
   }
 }
 

@@ -87,7 +87,7 @@ inline Json FitWithCovariance(double inertia, double inertia_error, double visco
   return fit;
 }
 
-inline RunOutcome FailureOf(const std::string& reason, int exit_code) {
+inline RunOutcome FailureOf(const Reason& reason, int exit_code) {
   RunOutcome outcome = OutcomeOf({});
   outcome.models = {"viscous"};
   outcome.result = nullptr;

@@ -37,7 +37,7 @@ class MadeStoreTest : public testing::Test {
     const auto source = OpenSource(folder_ / "runs.csv");
     auto store = Store::Open(folder_ / "store.sqlite", Store::Mode::kWrite);
     const auto begun = store->Begin(*source, std::nullopt, "{}");
-    EXPECT_TRUE(begun) << begun.error().message;
+    EXPECT_TRUE(begun) << begun.error().message();
     const auto runs = store->Next(0, 100000);
     bool is_complete = true;
     for (std::size_t i = 0; i < runs->size(); ++i) {

@@ -46,7 +46,7 @@ class ReadManifestTest : public testing::Test {
   /// The entries of a valid manifest.
   std::vector<ManifestEntry> Entries(const std::string& text) const {
     auto entries = Read(text);
-    EXPECT_TRUE(entries) << text.substr(0, 1000) << entries.error().message;
+    EXPECT_TRUE(entries) << text.substr(0, 1000) << entries.error().message();
     return entries ? *entries : std::vector<ManifestEntry>();
   }
 
@@ -61,8 +61,8 @@ class ReadManifestTest : public testing::Test {
     const auto entries = Read(text);
     if (entries) return "not refused";
     EXPECT_EQ(entries.error().code, StatusCode::kDataLoss);
-    EXPECT_THAT(entries.error().message, StartsWith(path_.string() + ":"));
-    return entries.error().message.substr(path_.string().size());
+    EXPECT_THAT(entries.error().message(), StartsWith(path_.string() + ":"));
+    return entries.error().message().substr(path_.string().size());
   }
 
   const fs::path folder_ = fs::path(testing::TempDir()) / ("manifest_test_" + std::to_string(getpid()));
@@ -199,7 +199,7 @@ TEST_F(ReadManifestTest, StopsIfTheSinkReturnsAnError) {
   });
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, StatusCode::kCannotWrite);
-  EXPECT_EQ(read.error().message, "enough");
+  EXPECT_EQ(read.error().message(), "enough");
   EXPECT_EQ(taken, 1);
 }
 
@@ -297,10 +297,10 @@ TEST_F(ReadManifestTest, RefusesAPathThatIsNotAFile) {
   const EntrySink none = [](const ManifestEntry&) -> Result<void> { return {}; };
   const Status missing = ReadManifest(folder_ / "none.csv", none).error();
   EXPECT_EQ(missing.code, StatusCode::kNotFound);
-  EXPECT_EQ(missing.message, (folder_ / "none.csv").string() + ": there is no such file; check the path");
+  EXPECT_EQ(missing.message(), (folder_ / "none.csv").string() + ": there is no such file; check the path");
   const Status directory = ReadManifest(folder_, none).error();
   EXPECT_EQ(directory.code, StatusCode::kDataLoss);
-  EXPECT_EQ(directory.message, folder_.string() + ": this is a directory; name a manifest file in it");
+  EXPECT_EQ(directory.message(), folder_.string() + ": this is a directory; name a manifest file in it");
 }
 
 }  // namespace

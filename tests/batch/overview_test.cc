@@ -26,19 +26,19 @@ class OverviewTest : public made_store::MadeStoreTest {};
 std::vector<FailureCount> FailuresOf(Store& store) {
   const auto overview = Overview(store);
   if (overview) return overview->failures;
-  ADD_FAILURE() << overview.error().message;
+  ADD_FAILURE() << overview.error().message();
   return {};
 }
 
 TEST_F(OverviewTest, GroupsFailuresByReasonWithoutNamesAndNumbers) {
-  Store store = StoreOf(PlainManifest(14), [](std::size_t i) -> std::optional<RunOutcome> {
+  Store store = StoreOf(PlainManifest(15), [](std::size_t i) -> std::optional<RunOutcome> {
     const std::string path = "run" + std::to_string(i) + ".csv";
     const std::string line = std::to_string(3 + i);
-    if (i < 12) return FailureOf(path + ":" + line + ":7: time " + line + ".25 s does not follow 9 s", 4);
-    return FailureOf(path + ": there is no such file; check the path", 3);
+    if (i < 12) return FailureOf({path + ":" + line + ":7", "time " + line + ".25 s does not follow 9 s"}, 4);
+    return FailureOf({i == 14 ? "rig.json" : path, "there is no such file; check the path"}, 3);
   });
   const std::vector<FailureCount> failures = FailuresOf(store);
-  ASSERT_THAT(failures, SizeIs(2));
+  ASSERT_THAT(failures, SizeIs(3));
   EXPECT_EQ(failures[0].fits, 12);
   EXPECT_EQ(failures[0].status, "failed");
   EXPECT_EQ(failures[0].exit_code, 4);
@@ -50,11 +50,12 @@ TEST_F(OverviewTest, GroupsFailuresByReasonWithoutNamesAndNumbers) {
   EXPECT_EQ(failures[1].exit_code, 3);
   EXPECT_EQ(failures[1].reason, "there is no such file; check the path");
   EXPECT_THAT(failures[1].examples, ElementsAre("run12.csv", "run13.csv"));
+  EXPECT_EQ(failures[2].reason, "rig.json: there is no such file; check the path");
 }
 
 TEST_F(OverviewTest, KeepsNumbersOfAReasonThatAllRunsShare) {
   Store store = StoreOf(PlainManifest(2), [](std::size_t i) {
-    return FailureOf("run" + std::to_string(i) + ".csv: the window [100, 200] s leaves 0 samples", 5);
+    return FailureOf({"run" + std::to_string(i) + ".csv", "the window [100, 200] s leaves 0 samples"}, 5);
   });
   EXPECT_EQ(FailuresOf(store).at(0).reason, "the window [100, 200] s leaves 0 samples");
 }

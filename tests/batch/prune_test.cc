@@ -82,7 +82,7 @@ TEST_F(PruneTest, RefusesWhileTheLastRefitIsNotComplete) {
   const auto pruned = Prune(store);
   ASSERT_FALSE(pruned);
   EXPECT_EQ(pruned.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(pruned.error().message, testing::HasSubstr("Finish the refit first: run refit_pendulums"));
+  EXPECT_THAT(pruned.error().message(), testing::HasSubstr("Finish the refit first: run refit_pendulums"));
   EXPECT_THAT(Rows(store_, "SELECT id FROM runs ORDER BY id"), ElementsAre("a", "b", "c"));
 }
 

@@ -250,7 +250,7 @@ TEST_F(RefitTest, ReturnsTheErrorOfTheCommitCallback) {
   const auto counts = Refit(Slow(*source, std::chrono::milliseconds(1100)), *store, options);
   ASSERT_FALSE(counts);
   EXPECT_EQ(counts.error().code, StatusCode::kCannotWrite);
-  EXPECT_EQ(counts.error().message, "cannot write out: no space");
+  EXPECT_EQ(counts.error().message(), "cannot write out: no space");
   EXPECT_EQ(commits, 1);
   EXPECT_EQ(ValueOf("SELECT count(exit_code) FROM runs"), "1");  // commits are at least a second apart
 }
@@ -269,7 +269,7 @@ TEST_F(RefitTest, ReturnsTheErrorOfTheStore) {
   const auto counts = Refit(breaking, *store, coulomb_);
   ASSERT_FALSE(counts);
   EXPECT_EQ(counts.error().code, StatusCode::kInternal);
-  EXPECT_THAT(counts.error().message, AllOf(StartsWith(store_.string()), HasSubstr("quantities")));
+  EXPECT_THAT(counts.error().message(), AllOf(StartsWith(store_.string()), HasSubstr("quantities")));
   EXPECT_EQ(read, 2);
 }
 
@@ -281,12 +281,12 @@ TEST_F(RefitTest, ReturnsTheErrorOfTheManifest) {
   const auto twice = Refit(*source, *store, coulomb_);
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(twice.error().message, HasSubstr("runs.csv:3: the id \"a\" is also at"));
+  EXPECT_THAT(twice.error().message(), HasSubstr("runs.csv:3: the id \"a\" is also at"));
   folder_.Write("runs.csv", "path,id\n");
   const auto none = Refit(*source, *store, coulomb_);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(none.error().message, HasSubstr("it names no recording"));
+  EXPECT_THAT(none.error().message(), HasSubstr("it names no recording"));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ class RefitTest : public testing::Test {
 inline std::string ResultAlone(const IdentifyOptions& options, const std::filesystem::path& file,
                                const std::optional<Rig>& rig, const std::string& path) {
   auto one = PrepareFile(file.string(), options, rig);
-  if (!one) return one.error().message;
+  if (!one) return one.error().message();
   const auto runs = IdentifyEach(options, *std::move(one));
   if (runs.size() != 1 || !runs.front()) return "not one run";
   nlohmann::ordered_json json = ToJson(*runs.front());

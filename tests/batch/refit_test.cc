@@ -53,7 +53,7 @@ constexpr const char* kCalibration =
 /// A recording in counts that this calibration converts to degrees.
 std::string CountsText(std::uint64_t seed) {
   const auto recording = SimulateRecording(small_batch::Truth(seed));
-  if (!recording) return recording.error().message;
+  if (!recording) return recording.error().message();
   std::string text = "time_s,angle_counts\n";
   for (Eigen::Index i = 0; i < recording->size(); ++i) {
     const double degrees = recording->value[i] * 180 / 3.14159265358979;
@@ -119,7 +119,7 @@ TEST_F(RefitTest, RefitsOneRunAsInABatch) {
   ASSERT_TRUE(source);
   const RunOutcome outcome = RefitRun(*source, entry, coulomb_);
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.reason, "");
+  EXPECT_EQ(outcome.reason.text(), "");
   EXPECT_EQ(outcome.result.dump(), ValueOf("SELECT result FROM runs"));
   EXPECT_EQ(outcome.provenance.data_sha256, ValueOf("SELECT data_sha256 FROM runs"));
   entry.path = "nowhere.csv";

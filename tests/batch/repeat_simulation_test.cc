@@ -46,7 +46,7 @@ class RepeatSimulation : public made_store::MadeStoreTest {
     Store store = StoreOf(PlainManifest(truths.size()), [&](std::size_t i) { return outcomes[i]; });
     auto summary = Summarize(store, {});
     if (summary) return ToJson(*summary);
-    ADD_FAILURE() << summary.error().message;
+    ADD_FAILURE() << summary.error().message();
     return nullptr;
   }
 

@@ -130,7 +130,7 @@ TEST_F(ShardsTest, KeepNoRunsOfAnotherShard) {
   fs::rename(ShardPath(out_, 0), ShardPath(out_, 1));
   AllShards(2);
   const auto merged = Merge(2);
-  ASSERT_TRUE(merged) << merged.error().message;
+  ASSERT_TRUE(merged) << merged.error().message();
   EXPECT_EQ(*merged, kRuns + 1);
   EXPECT_EQ(AllRows(store_), RowsAtOnce());
 }
@@ -155,7 +155,7 @@ TEST_F(ShardsTest, AreTheSameForTwoConcurrentAttempts) {
     }
   }
   for (const auto& count : counts) {
-    ASSERT_TRUE(count) << count.error().message;
+    ASSERT_TRUE(count) << count.error().message();
     EXPECT_EQ(count->done(), kRuns + 1);
   }
   EXPECT_THAT(NamesInOut(), ElementsAre("shard-0.sqlite"));
@@ -226,7 +226,7 @@ TEST_F(ShardsTest, ReportAnUnwritableFolder) {
   const auto counts = TryShard(at, {0, 1}, options_);
   ASSERT_FALSE(counts);
   EXPECT_EQ(counts.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(counts.error().message, AllOf(StartsWith("cannot write "), HasSubstr("nowhere/shard-0.sqlite")));
+  EXPECT_THAT(counts.error().message(), AllOf(StartsWith("cannot write "), HasSubstr("nowhere/shard-0.sqlite")));
 }
 
 }  // namespace

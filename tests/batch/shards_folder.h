@@ -40,7 +40,7 @@ class ShardsTest : public testing::Test {
   RefitCounts RefitOne(std::int64_t index, std::int64_t count, const RefitOptions& options) const {
     const auto counts = TryShard(At(index), {index, count}, options);
     if (counts) return *counts;
-    ADD_FAILURE() << counts.error().message;
+    ADD_FAILURE() << counts.error().message();
     return {};
   }
 

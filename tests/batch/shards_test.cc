@@ -57,7 +57,7 @@ TEST_F(ShardsTest, GiveTheSameStoreAsOneRefit) {
     fs::remove(store_);
     AllShards(count);
     const auto runs = Merge(count);
-    ASSERT_TRUE(runs) << runs.error().message;
+    ASSERT_TRUE(runs) << runs.error().message();
     EXPECT_EQ(*runs, kRuns + 1);
     EXPECT_EQ(AllRows(store_), at_once) << count;
     auto store = Store::Open(store_, Store::Mode::kRead);
@@ -83,7 +83,7 @@ TEST_F(ShardsTest, MayBeMergedTwice) {
   ASSERT_TRUE(Merge(2));
   const std::vector<std::string> rows = AllRows(store_);
   const auto again = Merge(2);
-  ASSERT_TRUE(again) << again.error().message;
+  ASSERT_TRUE(again) << again.error().message();
   EXPECT_EQ(*again, kRuns + 1);
   EXPECT_EQ(AllRows(store_), rows);
 }
@@ -166,9 +166,9 @@ TEST_F(ShardsTest, AreNotMergedIfARigChangedBetweenThem) {
   RefitOne(1, 2, options_);
   const auto merged = Merge(2);
   ASSERT_FALSE(merged);
-  EXPECT_EQ(merged.error().message, ShardPath(out_, 1).string() +
-                                        ": rig.json changed between the refits of this shard and of " +
-                                        ShardPath(out_, 0).string() + "; run the shards again");
+  EXPECT_EQ(merged.error().message(), ShardPath(out_, 1).string() +
+                                          ": rig.json changed between the refits of this shard and of " +
+                                          ShardPath(out_, 0).string() + "; run the shards again");
   RefitOne(0, 2, options_);
   EXPECT_TRUE(Merge(2));
 }
@@ -178,7 +178,7 @@ TEST_F(ShardsTest, AreNotMergedIntoTheStoreOfAShard) {
   const auto merged = MergeShards(out_, 2, ShardPath(out_, 1));
   ASSERT_FALSE(merged);
   EXPECT_EQ(merged.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(merged.error().message,
+  EXPECT_EQ(merged.error().message(),
             ShardPath(out_, 1).string() + ": this is one of the shards; name another store to merge them into");
   EXPECT_EQ(MissingShards(out_, 2).value().size(), 0);
 }
@@ -202,7 +202,7 @@ TEST_F(ShardsTest, AreMergedAfterAKilledMerge) {
   ASSERT_TRUE(Merge(2));
   LeaveAsKilled(store_, folder_ / "store.sqlite.merging");
   const auto merged = Merge(2);
-  ASSERT_TRUE(merged) << merged.error().message;
+  ASSERT_TRUE(merged) << merged.error().message();
   EXPECT_EQ(Value(store_, "PRAGMA integrity_check"), "ok");
   EXPECT_EQ(Value(store_, "SELECT count(*) FROM options"), "1");
   EXPECT_EQ(AllRows(store_), at_once);
@@ -215,12 +215,13 @@ TEST_F(ShardsTest, AreListedAndNotMergedWhileMissing) {
   std::atomic<bool> stop = false;
   RefitOne(3, 4, StoppingAfter(1, stop));
   const auto missing = MissingShards(out_, 4);
-  ASSERT_TRUE(missing) << missing.error().message;
+  ASSERT_TRUE(missing) << missing.error().message();
   EXPECT_THAT(*missing, ElementsAre(0, 2, 3));
   const auto merged = Merge(4);
   ASSERT_FALSE(merged);
   EXPECT_EQ(merged.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(merged.error().message, out_.string() + ": of 4 shards these are missing: 0,2,3; run them and merge again");
+  EXPECT_EQ(merged.error().message(),
+            out_.string() + ": of 4 shards these are missing: 0,2,3; run them and merge again");
   EXPECT_FALSE(fs::exists(store_));
   EXPECT_TRUE(fs::exists(out_ / "shard-3.sqlite.part"));  // finished work is kept
 }
@@ -236,14 +237,14 @@ TEST_F(ShardsTest, AreNotSearchedInAMissingFolder) {
   const auto missing = MissingShards(folder_ / "nowhere", 2);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
-  EXPECT_THAT(missing.error().message, StartsWith((folder_ / "nowhere").string() + ": there is no such folder"));
+  EXPECT_THAT(missing.error().message(), StartsWith((folder_ / "nowhere").string() + ": there is no such folder"));
 }
 
 /// The error message for a refused merge of two shards.
 std::string Refusal(const Result<std::int64_t>& merged) {
   if (merged) return "merged";
-  EXPECT_EQ(merged.error().code, StatusCode::kDataLoss) << merged.error().message;
-  return merged.error().message;
+  EXPECT_EQ(merged.error().code, StatusCode::kDataLoss) << merged.error().message();
+  return merged.error().message();
 }
 
 TEST_F(ShardsTest, AreRefusedForAnotherManifest) {
@@ -298,7 +299,7 @@ TEST_F(ShardsTest, AreNotMergedIntoAStoreThatIsInUse) {
   const auto merged = Merge(2);
   ASSERT_FALSE(merged);
   EXPECT_EQ(merged.error().code, StatusCode::kTryAgain);
-  EXPECT_THAT(merged.error().message, HasSubstr("another process"));
+  EXPECT_THAT(merged.error().message(), HasSubstr("another process"));
 }
 
 }  // namespace

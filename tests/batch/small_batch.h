@@ -80,7 +80,7 @@ inline SyntheticOptions Truth(std::uint64_t seed, double release_angle = 0.4) {
 inline std::string RecordingText(const SyntheticOptions& options) {
   const auto recording = SimulateRecording(options);
   if (!recording) {
-    ADD_FAILURE() << recording.error().message;
+    ADD_FAILURE() << recording.error().message();
     return "";
   }
   std::string text = "time_s,angle_rad\n";
@@ -131,12 +131,12 @@ inline RefitCounts RefitInto(const std::filesystem::path& store_path, const std:
   const auto source = OpenSource(manifest);
   auto store = Store::Open(store_path, Store::Mode::kWrite);
   if (!source || !store) {
-    ADD_FAILURE() << (source ? store.error().message : source.error().message);
+    ADD_FAILURE() << (source ? store.error().message() : source.error().message());
     return {};
   }
   const auto counts = Refit(*source, *store, options);
   if (counts) return *counts;
-  ADD_FAILURE() << counts.error().message;
+  ADD_FAILURE() << counts.error().message();
   return {};
 }
 

@@ -30,7 +30,7 @@ std::vector<ManifestEntry> EntriesOf(const Source& source) {
     entries.push_back(entry);
     return {};
   });
-  EXPECT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(read) << read.error().message();
   return entries;
 }
 
@@ -88,9 +88,9 @@ TEST_F(SourceTest, ReadsFilesFromTheFolderOfTheManifest) {
 TEST_F(SourceTest, GivesPathsInErrorsAsTheManifestDoes) {
   const Source source = Manifest();
   EXPECT_EQ(source.read("runs/none.csv").error().code, StatusCode::kNotFound);
-  EXPECT_EQ(source.read("runs/none.csv").error().message, "runs/none.csv: there is no such file; check the path");
+  EXPECT_EQ(source.read("runs/none.csv").error().message(), "runs/none.csv: there is no such file; check the path");
   EXPECT_EQ(source.read("runs").error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(source.read("runs").error().message, "runs: this is a directory; name a file in it");
+  EXPECT_EQ(source.read("runs").error().message(), "runs: this is a directory; name a file in it");
 }
 
 // Opening a pipe without a writer would block forever.
@@ -101,7 +101,7 @@ TEST_F(SourceTest, RefusesPipesAndDevicesWithoutOpeningThem) {
     const auto bytes = source.read(path);
     ASSERT_FALSE(bytes);
     EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-    EXPECT_EQ(bytes.error().message, path + ": this is a pipe or a device; a batch reads files");
+    EXPECT_EQ(bytes.error().message(), path + ": this is a pipe or a device; a batch reads files");
   }
 }
 
@@ -109,11 +109,11 @@ TEST_F(SourceTest, ReportsAMissingManifest) {
   const auto missing = OpenSource(folder_ / "none.csv");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(missing.error().message, (folder_ / "none.csv").string() + ": there is no such file; check the path");
+  EXPECT_EQ(missing.error().message(), (folder_ / "none.csv").string() + ": there is no such file; check the path");
   const auto folder = OpenSource(folder_);
   ASSERT_FALSE(folder);
   EXPECT_EQ(folder.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(folder.error().message, folder_.string() + ": this is a directory; name a manifest file in it");
+  EXPECT_EQ(folder.error().message(), folder_.string() + ": this is a directory; name a manifest file in it");
 }
 
 // ---- Folders and patterns ------------------------------------------------------------------------------------------
@@ -138,7 +138,7 @@ TEST_F(SourceTest, NamesAPatternWithoutMatches) {
   const auto source = FindSource({"datasets", "datasets/*.wav"});
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(source.error().message, "datasets/*.wav: no file matches this pattern; check the path");
+  EXPECT_EQ(source.error().message(), "datasets/*.wav: no file matches this pattern; check the path");
 }
 
 // ---- Packs ---------------------------------------------------------------------------------------------------------
@@ -182,10 +182,11 @@ TEST_F(SourceTest, ReportsTheErrorOfAFileFromAPack) {
   const Source packed = OpenSource(pack_).value();
   for (const std::string path : {"runs/none.csv", "runs", "pipe.csv"}) {
     EXPECT_EQ(packed.read(path).error().code, source.read(path).error().code) << path;
-    EXPECT_EQ(packed.read(path).error().message, source.read(path).error().message) << path;
+    EXPECT_EQ(packed.read(path).error().message(), source.read(path).error().message()) << path;
+    EXPECT_EQ(packed.read(path).error().place, path);
   }
   EXPECT_EQ(packed.read("other.csv").error().code, StatusCode::kNotFound);
-  EXPECT_EQ(packed.read("other.csv").error().message, "other.csv: there is no such file in " + pack_.string());
+  EXPECT_EQ(packed.read("other.csv").error().message(), "other.csv: there is no such file in " + pack_.string());
 }
 
 TEST_F(SourceTest, CanPackFoundFilesAndAPack) {
@@ -215,7 +216,7 @@ TEST_F(SourceTest, KeepsAPackIfTheSourceEndsInAnError) {
   const auto packed = Pack(OpenSource(folder_ / "runs.csv").value(), pack_);
   ASSERT_FALSE(packed);
   EXPECT_EQ(packed.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(packed.error().message, StartsWith((folder_ / "runs.csv").string() + ":3: a field begins with"));
+  EXPECT_THAT(packed.error().message(), StartsWith((folder_ / "runs.csv").string() + ":3: a field begins with"));
   EXPECT_THAT(IdsOf(OpenSource(pack_).value()), ElementsAre("first", "runs/b.csv", "third"));
   for (const auto& file : fs::directory_iterator(folder_)) {
     EXPECT_FALSE(file.path().filename().string().starts_with("batch.pack.")) << file.path();
@@ -228,7 +229,7 @@ TEST_F(SourceTest, ReportsAnUnwritablePack) {
     const auto packed = Pack(source, path);
     ASSERT_FALSE(packed);
     EXPECT_EQ(packed.error().code, StatusCode::kCannotWrite);
-    EXPECT_THAT(packed.error().message, StartsWith("cannot write " + path.string() + ": "));
+    EXPECT_THAT(packed.error().message(), StartsWith("cannot write " + path.string() + ": "));
   }
 }
 
@@ -241,7 +242,7 @@ TEST_F(SourceTest, OverwritesOnlyPacks) {
     const auto packed = Pack(source, other);
     ASSERT_FALSE(packed);
     EXPECT_EQ(packed.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(packed.error().message, StartsWith(other.string() + ": this file exists and is not a packed file"));
+    EXPECT_THAT(packed.error().message(), StartsWith(other.string() + ": this file exists and is not a packed file"));
     EXPECT_EQ(fs::file_size(other), before);
   }
 }
@@ -291,7 +292,7 @@ TEST_F(SourceTest, RefusesOtherSqliteFiles) {
   const auto other = OpenSource(pack_);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(other.error().message,
+  EXPECT_EQ(other.error().message(),
             pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name a packed file");
 }
 
@@ -300,18 +301,18 @@ TEST_F(SourceTest, RefusesOtherSqliteFilesWithATableOfFiles) {
   const auto other = OpenSource(pack_);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(other.error().message,
+  EXPECT_EQ(other.error().message(),
             pack_.string() + ": this SQLite file was not made by refit_pendulums pack; name a packed file");
 }
 
 TEST_F(SourceTest, RefusesAPackOfALaterFormat) {
   ASSERT_TRUE(Pack(Manifest(), pack_));
-  SQLite::Database(pack_.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 2");
+  SQLite::Database(pack_.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
   const auto newer = OpenSource(pack_);
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(newer.error().message,
-            pack_.string() + ": it was packed in format 2, but this program reads format 1; pack it again");
+  EXPECT_EQ(newer.error().message(),
+            pack_.string() + ": it was packed in format 3, but this program reads format 2; pack it again");
 }
 
 TEST_F(SourceTest, RefusesATruncatedPack) {
@@ -320,7 +321,7 @@ TEST_F(SourceTest, RefusesATruncatedPack) {
   const auto damaged = OpenSource(pack_);
   ASSERT_FALSE(damaged);
   EXPECT_EQ(damaged.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(damaged.error().message, StartsWith(pack_.string() + ": the file is damaged ("));
+  EXPECT_THAT(damaged.error().message(), StartsWith(pack_.string() + ": the file is damaged ("));
 }
 
 TEST_F(SourceTest, ReportsDamagedPagesOfAPack) {
@@ -332,9 +333,9 @@ TEST_F(SourceTest, ReportsDamagedPagesOfAPack) {
   file << std::string(static_cast<std::size_t>(size - kPage), '\xA5');
   file.close();
   const auto damaged = OpenSource(pack_);
-  ASSERT_TRUE(damaged) << damaged.error().message;  // the first page is intact
+  ASSERT_TRUE(damaged) << damaged.error().message();  // the first page is intact
   EXPECT_EQ(damaged->read("runs/a.csv").error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(damaged->read("runs/a.csv").error().message, HasSubstr(": the file is damaged ("));
+  EXPECT_THAT(damaged->read("runs/a.csv").error().message(), HasSubstr(": the file is damaged ("));
   const auto entries = damaged->for_each([](const ManifestEntry&) -> Result<void> { return {}; });
   ASSERT_FALSE(entries);
   EXPECT_EQ(entries.error().code, StatusCode::kDataLoss);

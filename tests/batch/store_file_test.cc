@@ -81,7 +81,7 @@ TEST_F(StoreFileTest, AllowsOneWriter) {
   const auto put = other.Put("a", UnfittedOutcome());
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, StatusCode::kTryAgain);
-  EXPECT_EQ(put.error().message, path_ + ": another process uses it; try again when that process is done");
+  EXPECT_EQ(put.error().message(), path_ + ": another process uses it; try again when that process is done");
   ASSERT_TRUE(store.Commit());
   ASSERT_TRUE(other.Put("a", UnfittedOutcome()) && other.Commit());  // the same data later
   EXPECT_EQ(Reopen().Count()->unfitted, 1);
@@ -108,7 +108,7 @@ TEST_F(StoreFileTest, WaitsForAReader) {
   const auto committed = store.Commit();  // commits the earlier Put
   EXPECT_TRUE(ended);
   end.join();
-  ASSERT_TRUE(committed) << committed.error().message;
+  ASSERT_TRUE(committed) << committed.error().message();
   EXPECT_EQ(Reopen().Count()->pending, 1);
 }
 
@@ -127,7 +127,7 @@ TEST_F(StoreFileTest, ChecksAllPages) {
   const auto checked = Reopen().Check();
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(checked.error().message, StartsWith(path_ + ": the file is damaged ("));
+  EXPECT_THAT(checked.error().message(), StartsWith(path_ + ": the file is damaged ("));
 }
 
 TEST_F(StoreFileTest, KeepsRunsMissingFromTheLastManifest) {
@@ -154,14 +154,14 @@ TEST_F(StoreFileTest, ReportsAnUnreadableStore) {
     ASSERT_EQ(::seteuid(self), 0);
   }
   EXPECT_EQ(fault.code, StatusCode::kDataLoss);
-  EXPECT_EQ(fault.message, path_ + ": the file cannot be read; check its permissions");
+  EXPECT_EQ(fault.message(), path_ + ": the file cannot be read; check its permissions");
 }
 
 // ---- Open ----------------------------------------------------------------------------------------------------------
 
 TEST_F(StoreFileTest, ReportsAMissingStore) {
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kNotFound);
-  EXPECT_EQ(FaultOf(Store::Mode::kRead).message, path_ + ": there is no such store; check the path");
+  EXPECT_EQ(FaultOf(Store::Mode::kRead).message(), path_ + ": there is no such store; check the path");
   EXPECT_FALSE(fs::exists(path_));
 }
 
@@ -170,7 +170,7 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 7);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 8);
   EXPECT_EQ(Reopen().Count()->runs, 1);
 }
 
@@ -201,9 +201,9 @@ TEST_F(StoreFileTest, ReadsAnOlderStoreThatCannotBeChanged) {
       ASSERT_EQ(::seteuid(self), 0);
     }
     fs::permissions(folder_, fs::perms::all);
-    ASSERT_TRUE(counts) << version << ": " << counts.error().message;
+    ASSERT_TRUE(counts) << version << ": " << counts.error().message();
     EXPECT_EQ(counts->pending, 1);
-    EXPECT_EQ(fault.code, StatusCode::kCannotWrite) << fault.message;
+    EXPECT_EQ(fault.code, StatusCode::kCannotWrite) << fault.message();
     EXPECT_EQ(SQLite::Database(path_).execAndGet("PRAGMA user_version").getInt(), version);
   }
 }
@@ -222,7 +222,7 @@ TEST_F(StoreFileTest, IsUpdatedByTwoProgramsAtOnce) {
         programs.emplace_back([&] {
           ready.arrive_and_wait();
           const auto store = Store::Open(path_, Store::Mode::kRead);
-          if (!store) fault = store.error().message;
+          if (!store) fault = store.error().message();
         });
       }
     }
@@ -235,11 +235,11 @@ TEST_F(StoreFileTest, RefusesFoldersAndTexts) {
   const auto folder = Store::Open(folder_, Store::Mode::kWrite);
   ASSERT_FALSE(folder);
   EXPECT_EQ(folder.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(folder.error().message, folder_.string() + ": this is a directory; name a store in it");
+  EXPECT_EQ(folder.error().message(), folder_.string() + ": this is a directory; name a store in it");
   std::ofstream(path_) << "path,id\na.csv,1\n";
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
-    EXPECT_EQ(FaultOf(mode).message, path_ + ": this is not an SQLite file; name an SQLite file");
+    EXPECT_EQ(FaultOf(mode).message(), path_ + ": this is not an SQLite file; name an SQLite file");
   }
   EXPECT_EQ(fs::file_size(path_), 16);
 }
@@ -248,7 +248,7 @@ TEST_F(StoreFileTest, RefusesOtherSqliteFiles) {
   SQLite::Database(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE runs(x)");
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
-    EXPECT_EQ(FaultOf(mode).message,
+    EXPECT_EQ(FaultOf(mode).message(),
               path_ + ": this is not a result store of refit_pendulums; name a result store or a new file");
   }
 }
@@ -257,9 +257,9 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
   Make({"a"}).database().exec("PRAGMA user_version = 99");
   for (const auto mode : {Store::Mode::kRead, Store::Mode::kWrite}) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
-    EXPECT_EQ(FaultOf(mode).message, path_ +
-                                         ": the store has version 99 of a newer program, but this program reads "
-                                         "versions up to 7; use the newer program");
+    EXPECT_EQ(FaultOf(mode).message(), path_ +
+                                           ": the store has version 99 of a newer program, but this program reads "
+                                           "versions up to 8; use the newer program");
   }
 }
 
@@ -270,7 +270,7 @@ TEST_F(StoreFileTest, ReportsDamage) {
   }
   fs::resize_file(path_, fs::file_size(path_) / 2);
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
-  EXPECT_THAT(FaultOf(Store::Mode::kRead).message, StartsWith(path_ + ": the file is damaged ("));
+  EXPECT_THAT(FaultOf(Store::Mode::kRead).message(), StartsWith(path_ + ": the file is damaged ("));
 }
 
 TEST_F(StoreFileTest, ReportsDamagedContent) {
@@ -279,14 +279,14 @@ TEST_F(StoreFileTest, ReportsDamagedContent) {
   const auto meta = store.Meta();
   ASSERT_FALSE(meta);
   EXPECT_EQ(meta.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(meta.error().message, StartsWith(path_ + ": the file is damaged ("));
+  EXPECT_THAT(meta.error().message(), StartsWith(path_ + ": the file is damaged ("));
 }
 
 TEST_F(StoreFileTest, ReportsAPathThatCannotBeCreated) {
   const auto store = Store::Open(folder_ / "nowhere" / "results.sqlite", Store::Mode::kWrite);
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(store.error().message, StartsWith("cannot write " + (folder_ / "nowhere").string()));
+  EXPECT_THAT(store.error().message(), StartsWith("cannot write " + (folder_ / "nowhere").string()));
 }
 
 }  // namespace

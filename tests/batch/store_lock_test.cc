@@ -69,12 +69,12 @@ class Holder {
 
 TEST_F(StoreLockTest, HasOneOwnerAtATime) {
   std::optional<Result<StoreLock>> lock = StoreLock::Take(store_);
-  ASSERT_TRUE(*lock) << lock->error().message;
+  ASSERT_TRUE(*lock) << lock->error().message();
   EXPECT_TRUE(fs::exists(file_));
   const auto other = StoreLock::Take(store_);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, StatusCode::kTryAgain);
-  EXPECT_EQ(other.error().message,
+  EXPECT_EQ(other.error().message(),
             store_.string() + ": another process writes to this file; try again when it is done");
   lock.reset();
   EXPECT_FALSE(fs::exists(file_));
@@ -127,8 +127,8 @@ TEST_F(StoreLockTest, ReportsAPathThatCannotBeCreated) {
   const auto lock = StoreLock::Take(store);
   ASSERT_FALSE(lock);
   EXPECT_EQ(lock.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(lock.error().message, StartsWith("cannot write " + store.string() + ": No such file or directory"));
-  EXPECT_THAT(lock.error().message, HasSubstr(store.string() + ".lock"));
+  EXPECT_THAT(lock.error().message(), StartsWith("cannot write " + store.string() + ": No such file or directory"));
+  EXPECT_THAT(lock.error().message(), HasSubstr(store.string() + ".lock"));
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ std::int64_t NumberOf(Store& store, const std::string& query) { return store.dat
 
 TEST_F(StoreTest, HasTheTablesOfItsSchema) {
   Store store = Make({"a"});
-  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 7);
+  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 8);
   EXPECT_EQ(NumberOf(store, "PRAGMA application_id"), 0x50656e64);  // "Pend"
   EXPECT_THAT(TextsOf(store, "SELECT name FROM sqlite_schema WHERE sql LIKE '%--%' ORDER BY name"),
               ElementsAre("all_fits", "answers", "batches", "files", "fits", "meta", "options", "quantities",
@@ -171,7 +171,7 @@ TEST_F(StoreTest, RefusesARepeatedIdWithoutAChange) {
   const auto begun = store.Begin(SourceOfIds({"a", "b", "a"}), std::nullopt, R"({"other":1})");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(begun.error().message, "runs.csv:4: the id \"a\" is also at runs.csv:2; give each run its own id");
+  EXPECT_EQ(begun.error().message(), "runs.csv:4: the id \"a\" is also at runs.csv:2; give each run its own id");
   EXPECT_THAT(TextsOf(store, "SELECT id FROM runs"), ElementsAre("x"));
   EXPECT_EQ(TextsOf(store, "SELECT key || value FROM meta"), before);
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM options"), 1);
@@ -183,7 +183,7 @@ TEST_F(StoreTest, RefusesAnEmptyBatch) {
   const auto begun = store.Begin(SourceOf({}), std::nullopt, "{}");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(begun.error().message, "runs.csv: it names no recording; give one per row");
+  EXPECT_EQ(begun.error().message(), "runs.csv: it names no recording; give one per row");
 }
 
 TEST_F(StoreTest, ReturnsTheErrorOfTheSource) {
@@ -193,7 +193,7 @@ TEST_F(StoreTest, ReturnsTheErrorOfTheSource) {
   const auto begun = store.Begin(source, std::nullopt, "{}");
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(begun.error().message, "gone");
+  EXPECT_EQ(begun.error().message(), "gone");
 }
 
 // ---- Rows ----------------------------------------------------------------------------------------------------------
@@ -262,7 +262,7 @@ TEST_F(StoreTest, ReplacesAllRowsOfARun) {
   ASSERT_TRUE(store.Put("a", unfitted) && store.Commit());
   EXPECT_THAT(
       TextsOf(store, "SELECT model || ' ' || status || ' ' || reason FROM all_fits WHERE id = 'a' AND stale IS NULL"),
-      ElementsAre("drag failed " + unfitted.reason));
+      ElementsAre("drag failed " + unfitted.reason.text()));
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM quantities WHERE model = 'drag'"), 0);
   EXPECT_EQ(NumberOf(store, "SELECT count(*) FROM runs WHERE id = 'a' AND result IS NULL AND exit_code = 3"), 1);
   ASSERT_TRUE(store.Put("a", RefittedOutcome()) && store.Commit());
@@ -347,7 +347,7 @@ TEST_F(StoreTest, RefusesAnOutcomeOfAnUnknownRun) {
   const auto put = store.Put("z", RefittedOutcome());
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, StatusCode::kInternal);
-  EXPECT_EQ(put.error().message, "no run z");
+  EXPECT_EQ(put.error().message(), "no run z");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST_F(SummaryJsonTest, MatchesItsSchema) {
   });
   Store store = StoreOf(manifest, [](std::size_t i) -> std::optional<RunOutcome> {
     if (i == 0) return std::nullopt;
-    if (i == 1) return FailureOf("run1.csv: no swing", 5);
+    if (i == 1) return FailureOf({"run1.csv", "no swing"}, 5);
     const double value = (i % 2 == 0 ? 10 : 90) + (i == 9 ? 500 : static_cast<double>(i % 3));
     return OutcomeOf({FitOf("viscous", value), FitOf("coulomb", value, i == 2 ? "not_converged" : "converged")});
   });

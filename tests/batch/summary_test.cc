@@ -42,7 +42,7 @@ class SummaryTest : public made_store::MadeStoreTest {
   static Json SummaryOf(Store& store, const SummaryOptions& options = {}) {
     auto summary = Summarize(store, options);
     if (summary) return ToJson(*summary);
-    ADD_FAILURE() << summary.error().message;
+    ADD_FAILURE() << summary.error().message();
     return nullptr;
   }
 };
@@ -61,7 +61,7 @@ const Json& ParameterOf(const Json& summary, const std::string& model, const std
 TEST_F(SummaryTest, CountsFitsByModelStatusAndRecommendation) {
   Store store = StoreOf(PlainManifest(5), [](std::size_t i) -> std::optional<RunOutcome> {
     if (i == 4) return std::nullopt;
-    if (i == 3) return FailureOf("run3.csv: no swing", 5);
+    if (i == 3) return FailureOf({"run3.csv", "no swing"}, 5);
     const std::vector<Json> fits = {FitOf("viscous", 10, i == 0 ? "not_converged" : "converged"),
                                     FitOf("coulomb", 10, i == 1 ? "not_identifiable" : "converged")};
     return OutcomeOf(fits, i == 2 ? nullptr : "viscous");
@@ -310,8 +310,8 @@ TEST_F(SummaryTest, WarnsOfEarlierManifestsAndDuplicateSwings) {
 TEST_F(SummaryTest, LeavesFormerResultsOut) {
   Store store =
       StoreOf(PlainManifest(4), [](std::size_t i) { return OutcomeOf({FitOf("viscous", i == 0 ? 100 : 10)}); });
-  RunOutcome failure = FailureOf("run0.csv: there is no such file; check the path", 3);
-  ASSERT_EQ(store.PutUnlessWorse("run0.csv", failure, "inputs", nullptr).value(), failure.reason);
+  RunOutcome failure = FailureOf({"run0.csv", "there is no such file; check the path"}, 3);
+  ASSERT_EQ(store.PutUnlessWorse("run0.csv", failure, "inputs", nullptr).value(), failure.reason.text());
   const Json summary = SummaryOf(store);
   EXPECT_EQ(summary["headline"]["text"], "3 of 4 recordings fitted; 1 with a former result only");
   EXPECT_EQ(summary["headline"]["stale_runs"][0]["reason"], "there is no such file; check the path");
@@ -324,9 +324,9 @@ TEST_F(SummaryTest, LeavesFormerResultsOut) {
 
 TEST_F(SummaryTest, CountsMissingAndRefusedRecordingsFirst) {
   Store store = StoreOf(PlainManifest(6), [](std::size_t i) -> std::optional<RunOutcome> {
-    if (i == 0) return FailureOf("run0.csv: there is no such file; check the path", 3);
-    if (i == 1) return FailureOf("rig.json: there is no such file; check the path", 3);  // the recording exists
-    if (i == 2) return FailureOf("run2.csv: no swing", 5);
+    if (i == 0) return FailureOf({"run0.csv", "there is no such file; check the path"}, 3);
+    if (i == 1) return FailureOf({"rig.json", "there is no such file; check the path"}, 3);  // the recording exists
+    if (i == 2) return FailureOf({"run2.csv", "no swing"}, 5);
     if (i == 3) return std::nullopt;
     RunOutcome outcome = OutcomeOf({FitOf("viscous", 10, i == 4 ? "not_converged" : "converged")});
     outcome.exit_code = i == 4 ? 1 : 0;
@@ -518,7 +518,7 @@ TEST_F(SummaryTest, RefusesAnUnknownColumn) {
     const auto summary = Summarize(store, options);
     ASSERT_FALSE(summary);
     EXPECT_EQ(summary.error().code, StatusCode::kInvalidArgument);
-    EXPECT_EQ(summary.error().message, std::string(flag) + ": the manifest has no column 'room'; it has date, place");
+    EXPECT_EQ(summary.error().message(), std::string(flag) + ": the manifest has no column 'room'; it has date, place");
   }
 }
 
@@ -527,7 +527,7 @@ TEST_F(SummaryTest, RefusesAStoreWithoutResults) {
   const auto summary = Summarize(store, {});
   ASSERT_FALSE(summary);
   EXPECT_EQ(summary.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(summary.error().message, (folder_ / "store.sqlite").string() + ": no run has a fit; refit some first");
+  EXPECT_EQ(summary.error().message(), (folder_ / "store.sqlite").string() + ": no run has a fit; refit some first");
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_F(TemporaryStoreTest, PublishesACopyOfEveryByte) {
     for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<char>(i % 251);
     const fs::path to = Write("to", "what was there");
     const auto published = Publish(Write("from", bytes), to);
-    ASSERT_TRUE(published) << published.error().message;
+    ASSERT_TRUE(published) << published.error().message();
     EXPECT_TRUE(Read(to) == bytes) << size;
   }
 }
@@ -78,8 +78,9 @@ TEST_F(TemporaryStoreTest, NamesAMissingFolder) {
   const auto checked = CheckFolderOf(folder_ / "nowhere" / "a.sqlite");
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kCannotWrite);
-  EXPECT_EQ(checked.error().message, "cannot write " + (folder_ / "nowhere" / "a.sqlite").string() +
-                                         ": there is no folder " + (folder_ / "nowhere").string() + "; make it first");
+  EXPECT_EQ(checked.error().message(), "cannot write " + (folder_ / "nowhere" / "a.sqlite").string() +
+                                           ": there is no folder " + (folder_ / "nowhere").string() +
+                                           "; make it first");
 }
 
 }  // namespace

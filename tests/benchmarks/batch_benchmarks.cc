@@ -62,7 +62,7 @@ double FilesToJson(const Source& source, const RefitOptions& options) {
     benchmark::DoNotOptimize(RefitRun(source, entry, options).result.dump());
     return {};
   });
-  if (!fitted) throw std::runtime_error(fitted.error().message);
+  if (!fitted) throw std::runtime_error(fitted.error().message());
   return SecondsSince(begin);
 }
 

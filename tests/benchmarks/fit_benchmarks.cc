@@ -43,7 +43,7 @@ void FindStartValues(benchmark::State& state) {
   const MotionModel model = Expect(FindMotionModel("coulomb"));
   for (auto _ : state) {
     Result<StartValues> values = EstimateStartValues(recording, model, std::nullopt);
-    if (!values) return state.SkipWithError(values.error().message.c_str());
+    if (!values) return state.SkipWithError(values.error().message().c_str());
     benchmark::DoNotOptimize(values);
   }
 }
@@ -54,7 +54,7 @@ void FindWindow(benchmark::State& state) {
   for (auto _ : state) {
     const Recording repaired = RepairValues(recording);
     Result<ChosenSwings> swings = ChooseSwings(repaired, {});
-    if (!swings) return state.SkipWithError(swings.error().message.c_str());
+    if (!swings) return state.SkipWithError(swings.error().message().c_str());
     benchmark::DoNotOptimize(swings);
   }
   state.counters["samples"] = kSamples;
@@ -65,7 +65,7 @@ void FitAgain(benchmark::State& state, const Recording& recording, const FitOpti
   Result<FitReport> fit;
   for (auto _ : state) {
     fit = FitRecording(recording, options);
-    if (!fit) return state.SkipWithError(fit.error().message.c_str());
+    if (!fit) return state.SkipWithError(fit.error().message().c_str());
     if (fit->termination != Termination::kConverged) return state.SkipWithError(fit->reason.c_str());
   }
   Report(state, *fit);
@@ -89,7 +89,7 @@ void ParseCsv(benchmark::State& state) {
   const std::string csv = ReferenceCsv();
   for (auto _ : state) {
     Result<Recording> recording = ParseRecording(csv, "reference.csv");
-    if (!recording) return state.SkipWithError(recording.error().message.c_str());
+    if (!recording) return state.SkipWithError(recording.error().message().c_str());
     benchmark::DoNotOptimize(recording);
   }
   state.counters["samples"] = kSamples;
@@ -136,7 +136,7 @@ void FileToJson(benchmark::State& state) {
   Result<Identification> report;
   for (auto _ : state) {
     report = FitFile(file.path(), {ReferenceOptions().model}, Checks::kNone);
-    if (!report) return state.SkipWithError(report.error().message.c_str());
+    if (!report) return state.SkipWithError(report.error().message().c_str());
     std::string json = ToJsonText(*report);
     benchmark::DoNotOptimize(json);
   }
@@ -148,7 +148,7 @@ void FileToResult(benchmark::State& state, const std::vector<std::string>& model
   const TemporaryFile file(ReferenceCsv());
   for (auto _ : state) {
     const auto report = FitFile(file.path(), models, Checks::kStandard);
-    if (!report) return state.SkipWithError(report.error().message.c_str());
+    if (!report) return state.SkipWithError(report.error().message().c_str());
     std::string json = ToJsonText(*report);
     benchmark::DoNotOptimize(json);
   }

@@ -38,7 +38,7 @@ void FitMemory(benchmark::State& state, int samples) {
     if (!ResetPeak()) return state.SkipWithError("/proc/self/clear_refs cannot be written");
     const double before = StatusBytes("VmRSS");
     const Result<FitReport> fit = FitRecording(recording, options);
-    if (!fit) return state.SkipWithError(fit.error().message.c_str());
+    if (!fit) return state.SkipWithError(fit.error().message().c_str());
     bytes = StatusBytes("VmHWM") - before;
   }
   state.counters["bytes_per_sample"] = bytes / samples;

@@ -32,7 +32,7 @@ inline constexpr Parameters kTruth = {0.079, 0.003, 0.001, 0.423, 1.9, 0.012};
 template <typename T>
 T Expect(Result<T> result) {
   if (result) return *std::move(result);
-  throw std::runtime_error(result.error().message);
+  throw std::runtime_error(result.error().message());
 }
 
 /// The rig of the Control Tutorials' activity: a bob of 0.380 kg on a rod of 0.095 kg and 0.43 m.

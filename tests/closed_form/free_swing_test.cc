@@ -357,7 +357,7 @@ std::string ErrorMessage(const Recording& recording) {
   const auto swings = FindFreeSwings(recording);
   if (swings) return "accepted";
   EXPECT_EQ(swings.error().code, StatusCode::kFailedPrecondition);
-  return swings.error().message;
+  return swings.error().message();
 }
 
 TEST(FindFreeSwings, RefusesAConstantReading) {
@@ -394,7 +394,7 @@ Recording DrivenThenFree(double rate, bool from_rest) {
 TEST(FindFreeSwings, BeginsAfterASteadyDrive) {
   for (const double rate : {0.01, 0.015, 0.02, 0.05, 0.2}) {
     const auto swings = FindFreeSwings(DrivenThenFree(rate, false), true);
-    ASSERT_TRUE(swings.has_value()) << swings.error().message;
+    ASSERT_TRUE(swings.has_value()) << swings.error().message();
     ASSERT_THAT(*swings, SizeIs(1));
     EXPECT_EQ(swings->front().begins.reason, WindowBegin::Reason::kAfterDrive) << rate;
     EXPECT_THAT(swings->front().from, AllOf(Ge(30.0 - kHalfPeriod), Le(30 + 4 * kHalfPeriod + 0.01 / rate))) << rate;
@@ -404,8 +404,9 @@ TEST(FindFreeSwings, BeginsAfterASteadyDrive) {
 TEST(FindFreeSwings, ProposesTheDecayAfterADriveFromRest) {
   const auto swings = FindFreeSwings(DrivenThenFree(0.1, true), true);
   ASSERT_FALSE(swings.has_value());
-  EXPECT_THAT(swings.error().message, StartsWith("the amplitude rises repeatedly: the pendulum is driven; if the drive "
-                                                 "ends at "));
+  EXPECT_THAT(swings.error().message(),
+              StartsWith("the amplitude rises repeatedly: the pendulum is driven; if the drive "
+                         "ends at "));
   ASSERT_THAT(swings.error().try_flags, SizeIs(1));
   EXPECT_THAT(std::stod(swings.error().try_flags.front().substr(7)),
               AllOf(Ge(30.0 - kHalfPeriod), Le(30 + 4 * kHalfPeriod)));
@@ -418,7 +419,7 @@ TEST(FindFreeSwings, TakesNoOutliersForADrive) {
     if (std::abs(recording.time[i] - 12) < 1.5 * kHalfPeriod) recording.value[i] *= 1.3;
   }
   const auto swings = FindFreeSwings(recording);
-  ASSERT_TRUE(swings.has_value()) << swings.error().message;
+  ASSERT_TRUE(swings.has_value()) << swings.error().message();
   for (const FreeSwing& swing : *swings) EXPECT_NE(swing.begins.reason, WindowBegin::Reason::kAfterDrive);
 }
 
@@ -426,7 +427,7 @@ TEST(FindFreeSwings, TakesNoFreeSwingForADrive) {
   for (const auto& decay :
        {Decay{kOmega, 0, 0.004, 0, 0.8, 60}, Decay{kOmega, 0.01, 0, 0, 0.8, 60}, Decay{kOmega, 0, 0, 0.004, 0.8, 60}}) {
     const auto swings = FindFreeSwings(SimulateDecay(decay));
-    ASSERT_TRUE(swings.has_value()) << swings.error().message;
+    ASSERT_TRUE(swings.has_value()) << swings.error().message();
     EXPECT_NE(swings->front().begins.reason, WindowBegin::Reason::kAfterDrive);
   }
 }

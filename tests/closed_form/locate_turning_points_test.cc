@@ -142,7 +142,7 @@ TEST(LocateTurningPoints, NeedsThreeConsecutiveTurningPoints) {
   const auto located = LocateTurningPoints(Sample(Cosine, 1.7, 100));
   ASSERT_FALSE(located);
   EXPECT_EQ(located.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(located.error().message, HasSubstr("record for longer"));
+  EXPECT_THAT(located.error().message(), HasSubstr("record for longer"));
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ TEST(NaturalFrequency, RefusesIsolatedHalfSwings) {
   const Result<double> frequency = NaturalFrequency(recording, Must(FindTurningPoints(recording)), Gravity::kSine);
   ASSERT_FALSE(frequency);
   EXPECT_EQ(frequency.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(frequency.error().message, HasSubstr("no two successive half swings without a gap"));
+  EXPECT_THAT(frequency.error().message(), HasSubstr("no two successive half swings without a gap"));
 }
 
 }  // namespace

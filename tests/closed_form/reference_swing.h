@@ -23,7 +23,7 @@ namespace pendulum {
 /// Returns the value. Without a value it ends the test with the error message.
 template <typename T>
 T Must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message);
+  if (!result) throw std::runtime_error(result.error().message());
   return *std::move(result);
 }
 

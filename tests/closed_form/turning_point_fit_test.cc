@@ -94,7 +94,7 @@ TEST(FitTurningPoints, NeedsMoreTurningPointsThanUnknowns) {
   const auto found = FitTurningPoints(SimulateDecay(decay), kDragModel);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(found.error().message, HasSubstr("3 turning points are too few for the 7 unknowns"));
+  EXPECT_THAT(found.error().message(), HasSubstr("3 turning points are too few for the 7 unknowns"));
 }
 
 TEST(CompareEnvelopes, FindsTheOnlyTermPresent) {

@@ -127,7 +127,7 @@ TEST(TurningPointView, HasTheTurningPointsOfTheMotion) {
   ASSERT_TRUE(expected);
   for (const double axis : {0.0, kPi / 2}) {
     const auto swings = FindFreeSwings(Acceleration(axis, 0.02));
-    ASSERT_TRUE(swings) << swings.error().message;
+    ASSERT_TRUE(swings) << swings.error().message();
     ASSERT_THAT(*swings, SizeIs(1));
     EXPECT_THAT(swings->front().half_period, DoubleNear(expected->front().half_period, 0.01));
     EXPECT_THAT(swings->front().turns.size(), testing::Ge(expected->front().turns.size() - 3));

@@ -136,7 +136,7 @@ TEST(FindTurningPoints, RefusesAConstantReading) {
   const auto found = FindTurningPoints(Sample([](double) { return 0.3; }, 10, 10));
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(found.error().message,
+  EXPECT_EQ(found.error().message(),
             "the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 
@@ -146,9 +146,9 @@ TEST(FindTurningPoints, RefusesFewerThanThreeTurningPointsWithTheirNumber) {
   const auto two = FindTurningPoints(Sample(wave, 1.5, 100));
   ASSERT_FALSE(two);
   EXPECT_EQ(two.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(two.error().message, HasSubstr("neighbouring samples: 2;"));
-  EXPECT_THAT(two.error().message, HasSubstr("are needed: choose"));
-  EXPECT_THAT(FindTurningPoints(Sample(wave, 0.4, 100)).error().message, HasSubstr("neighbouring samples: 0;"));
+  EXPECT_THAT(two.error().message(), HasSubstr("neighbouring samples: 2;"));
+  EXPECT_THAT(two.error().message(), HasSubstr("are needed: choose"));
+  EXPECT_THAT(FindTurningPoints(Sample(wave, 0.4, 100)).error().message(), HasSubstr("neighbouring samples: 0;"));
   EXPECT_TRUE(FindTurningPoints(Sample(wave, 2.0, 100)));
 }
 
@@ -160,9 +160,9 @@ TEST(FindTurningPoints, NamesATableOfMaxima) {
       Sample([&](double t) { return 0.5 * std::exp(-0.05 * t) - 0.0005 * t + noise(random); }, 56, 1 / 1.4);
   const auto found = FindTurningPoints(maxima);
   ASSERT_FALSE(found);
-  EXPECT_THAT(found.error().message, HasSubstr("maxima of a swing, one of each period; give all readings"));
+  EXPECT_THAT(found.error().message(), HasSubstr("maxima of a swing, one of each period; give all readings"));
   maxima.value *= -1;
-  EXPECT_THAT(FindTurningPoints(maxima).error().message, HasSubstr("maxima of a swing"));
+  EXPECT_THAT(FindTurningPoints(maxima).error().message(), HasSubstr("maxima of a swing"));
 }
 
 // ---- Zero and runs -----------------------------------------------------------------------------------------------

@@ -109,7 +109,7 @@ class Swing {
   void Release(double angle) {
     const Start<double> start{synthetic_.start, synthetic_.release_time, angle, 0.0};
     auto trajectory = MakeTrajectory(synthetic_.model, synthetic_.parameters, start, {.begin = 0, .end = kSeconds});
-    if (!trajectory) throw std::runtime_error(trajectory.error().message);
+    if (!trajectory) throw std::runtime_error(trajectory.error().message());
     trajectory_ = *std::move(trajectory);
   }
 

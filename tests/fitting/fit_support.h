@@ -29,7 +29,7 @@ inline constexpr double kCount = 0.1985 * kPi / 180;                          //
 /// The value; throws with the error's message if there is none.
 template <typename T>
 T Must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message);
+  if (!result) throw std::runtime_error(result.error().message());
   return *std::move(result);
 }
 

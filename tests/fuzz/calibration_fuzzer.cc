@@ -18,7 +18,7 @@ void Check(std::string_view text) {
     Require(ParseCalibration(calibration->source.dump(), "a.json").has_value());
   } else {
     Require(calibration.error().code == StatusCode::kDataLoss);
-    RequireSentence(calibration.error().message, "a.json");
+    RequireSentence(calibration.error().message(), "a.json");
   }
 }
 

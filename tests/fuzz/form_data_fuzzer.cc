@@ -15,7 +15,7 @@ namespace {
 void Check(std::string_view content_type, std::string_view body) {
   const auto parts = ParseFormData(content_type, body);
   if (!parts) {
-    Require(parts.error().code == StatusCode::kInvalidArgument && parts.error().message.size() < 2000);
+    Require(parts.error().code == StatusCode::kInvalidArgument && parts.error().message().size() < 2000);
     return;
   }
   Require(ParseMediaType(content_type).has_value() && parts->size() <= kMaxFormParts);

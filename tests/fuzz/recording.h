@@ -43,7 +43,7 @@ inline void CheckResult(const Result<Recording>& recording) {
     Require(!recording->range || recording->range->low < recording->range->high);
   } else {
     Require(recording.error().code != StatusCode::kNotFound && recording.error().code != StatusCode::kInternal);
-    RequireSentence(recording.error().message, "a.csv");
+    RequireSentence(recording.error().message(), "a.csv");
   }
 }
 

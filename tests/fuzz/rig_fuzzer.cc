@@ -21,7 +21,7 @@ void Check(std::string_view text) {
     Require(ParseRig(rig->source.dump(), "a.json").has_value());
   } else {
     Require(rig.error().code == StatusCode::kDataLoss);
-    RequireSentence(rig.error().message, "a.json");
+    RequireSentence(rig.error().message(), "a.json");
   }
 }
 

@@ -21,7 +21,7 @@ void Check(std::string_view text) {
   Require(AuthorityOf(text).size() <= text.size());
   const auto target = ParseTarget(text);
   if (!target) {
-    Require(target.error().code == StatusCode::kInvalidArgument && target.error().message.size() < 2000);
+    Require(target.error().code == StatusCode::kInvalidArgument && target.error().message().size() < 2000);
     return;
   }
   const std::string& path = target->path;

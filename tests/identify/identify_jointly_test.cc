@@ -37,7 +37,7 @@ Result<Identification> Joined(const std::vector<std::string>& paths, const std::
 // src/docs/examples.md: one rig, I_O = 0.079 kg m², b = 0.002 N m s/rad, τ_c = 0.004 N m.
 TEST(IdentifyJointly, IdentifiesTheRigOfSeveralRecordings) {
   const auto run = Joined({"datasets/runs_2.csv", "datasets/runs_3.csv"}, "datasets/textbook_rig.json");
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   const Identification& report = *run;
   ASSERT_EQ(report.fits.size(), 1);
   EXPECT_EQ(report.fits[0].termination, Termination::kConverged) << report.fits[0].reason;
@@ -56,7 +56,7 @@ TEST(IdentifyJointly, RefusesARecordingThatIsNamedTwice) {
   const auto run = Joined({"datasets/runs_1.csv", "datasets/../datasets/runs_1.csv"});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(run.error().message,
+  EXPECT_EQ(run.error().message(),
             "datasets/runs_1.csv and datasets/../datasets/runs_1.csv are the same recording: all readings are equal; "
             "name it once");
 }
@@ -65,7 +65,7 @@ TEST(IdentifyJointly, RefusesOneSwing) {
   const auto run = Joined({"datasets/runs_1.csv"});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(run.error().message, HasSubstr("there is only one swing"));
+  EXPECT_THAT(run.error().message(), HasSubstr("there is only one swing"));
 }
 
 TEST(IdentifyJointly, RefusesClosedFormsOnly) {
@@ -75,7 +75,7 @@ TEST(IdentifyJointly, RefusesClosedFormsOnly) {
   const auto run = IdentifyJointly(options, {});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(run.error().message, HasSubstr("closed forms exist only for a single recording"));
+  EXPECT_THAT(run.error().message(), HasSubstr("closed forms exist only for a single recording"));
 }
 
 TEST(IdentifyJointly, BlamesNoRecordingForAStop) {
@@ -92,7 +92,7 @@ TEST(IdentifyJointly, BlamesNoRecordingForAStop) {
   const auto run = IdentifyJointly(options, std::move(recordings));
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kTryAgain);
-  EXPECT_THAT(run.error().message, StartsWith("the fit was stopped"));
+  EXPECT_THAT(run.error().message(), StartsWith("the fit was stopped"));
 }
 
 /// Copies of two recordings, each with a different rig.
@@ -115,13 +115,13 @@ TEST_F(DifferentRigs, AreRefused) {
   const auto run = Joined({first_, second_});
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(run.error().message,
+  EXPECT_THAT(run.error().message(),
               AllOf(StartsWith(first_ + " and " + second_ + " describe different rigs"), HasSubstr("--rig")));
 }
 
 TEST_F(DifferentRigs, AreReplacedByTheRigOfTheCommandLine) {
   const auto run = Joined({first_, second_}, "datasets/textbook_rig.json");
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   ASSERT_TRUE(run->rig);
   EXPECT_NEAR(run->rig->gravity_torque.value, 1.8033, 1e-4);  // (M + m / 2) g l, src/docs/examples.md
 }

@@ -48,7 +48,7 @@ TEST(IdentifyEach, RefusesARigThatContradictsTheSwing) {
     EXPECT_EQ(runs.at(0).has_value(), factor == 1);
     if (runs[0]) continue;
     EXPECT_EQ(runs[0].error().code, StatusCode::kDataLoss);
-    EXPECT_THAT(runs[0].error().message, HasSubstr("correct the unit of the times"));
+    EXPECT_THAT(runs[0].error().message(), HasSubstr("correct the unit of the times"));
   }
 }
 
@@ -72,7 +72,7 @@ Result<Identification> FitWithRig(const std::string& rig, IdentifyOptions option
 // The rig of the recording is 0.43 m long; its G/I is 1.803 / 0.079 1/s² (src/docs/examples.md).
 TEST(IdentifyEach, ReportsGravityAndLengthOfAStringPendulum) {
   const auto run = FitWithRig(R"({"length": 0.43, "gravity": 9.81})", OptionsFor({"coulomb"}));
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   const FitReport& fit = run->fits[0];
   const auto value = [&](const std::string& name) {
     const auto found = std::ranges::find(fit.derived, name, &DerivedQuantity::name);
@@ -91,10 +91,10 @@ TEST(IdentifyEach, TakesALinearTorqueForARigWithAStiffness) {
   const auto refused = FitWithRig(R"({"stiffness": 0.02})", options);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(refused.error().message, HasSubstr("give --gravity linear"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("give --gravity linear"));
   options.rig_chooses_gravity = true;
   const auto run = FitWithRig(R"({"stiffness": 0.02})", options);
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   EXPECT_EQ(run->fits[0].model.name, "linear");
   EXPECT_EQ(run->fits[0].Find("inertia")->unit, "kg m^2");
   EXPECT_EQ(std::ranges::count_if(run->warnings,
@@ -128,7 +128,7 @@ std::vector<Result<Identification>> FitTwoReleases(const IdentifyOptions& option
 TEST(IdentifyEach, AddsAllConclusionsToTheFit) {
   const auto runs = FitTextbook(OptionsFor({"viscous"}));
   ASSERT_THAT(runs, SizeIs(1));
-  ASSERT_TRUE(runs[0]) << runs[0].error().message;
+  ASSERT_TRUE(runs[0]) << runs[0].error().message();
   const Identification& report = *runs[0];
   ASSERT_THAT(report.fits, SizeIs(1));
   const ParameterEstimate& inertia = *report.fits[0].Find("inertia");
@@ -153,7 +153,7 @@ TEST(IdentifyEach, AddsAllConclusionsToTheFit) {
 
 TEST(IdentifyEach, ComparesSeveralModelsInTheOrderAskedFor) {
   const auto runs = FitTextbook(OptionsFor({"coulomb", "viscous"}));
-  ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+  ASSERT_TRUE(runs.at(0)) << runs[0].error().message();
   const Identification& report = *runs[0];
   ASSERT_THAT(report.fits, SizeIs(2));
   EXPECT_EQ(report.fits[0].model.name, "coulomb");
@@ -168,7 +168,7 @@ TEST(IdentifyEach, ChecksTheMainFitOrAllFitsOrNoFit) {
     IdentifyOptions options = OptionsFor({"coulomb", "viscous"});
     options.checks = checks;
     const auto runs = FitTextbook(options);
-    ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+    ASSERT_TRUE(runs.at(0)) << runs[0].error().message();
     const Identification& one = *runs[0];
     const auto is_tested = [](const Constancy& constancy) { return constancy.halves_p.has_value(); };
     const auto is_compared = [](const ClosedFormCheck& check) { return !check.rows.empty(); };
@@ -185,7 +185,7 @@ TEST(IdentifyEach, MakesClosedFormsWithoutAFit) {
   IdentifyOptions options = OptionsFor({"viscous"});
   options.closed_form_only = true;
   const auto runs = FitTextbook(options);
-  ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+  ASSERT_TRUE(runs.at(0)) << runs[0].error().message();
   EXPECT_THAT(runs[0]->fits, IsEmpty());
   EXPECT_TRUE(runs[0]->recordings.front().closed_forms);
   EXPECT_EQ(runs[0]->recordings.front().closed_forms_model, "viscous");
@@ -199,7 +199,7 @@ TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   counts.value = counts.value.array() * 300 + 512;
   counts.unit = "counts";
   const auto runs = IdentifyEach(options, Must(PrepareRecording(counts, options, std::nullopt)));
-  ASSERT_TRUE(runs.at(0)) << runs[0].error().message;
+  ASSERT_TRUE(runs.at(0)) << runs[0].error().message();
   EXPECT_EQ(runs[0]->recordings.front().closed_forms_model, "linear");
   ASSERT_THAT(runs[0]->recordings.front().warnings, Not(IsEmpty()));
   EXPECT_EQ(runs[0]->recordings.front().warnings.back().code, "uncalibrated");
@@ -213,7 +213,7 @@ TEST(IdentifyEach, FitsEachChosenRelease) {
   const auto runs = FitTwoReleases(options);
   ASSERT_THAT(runs, SizeIs(2));
   for (std::size_t i = 0; i < 2; ++i) {
-    ASSERT_TRUE(runs[i]) << runs[i].error().message;
+    ASSERT_TRUE(runs[i]) << runs[i].error().message();
     EXPECT_EQ(runs[i]->recordings.front().data.release, i + 1);
     EXPECT_EQ(runs[i]->recordings.front().data.path, "two.csv");
     EXPECT_EQ(runs[i]->recordings.front().data.samples, 900 + 400 + 1000);
@@ -230,7 +230,7 @@ TEST(IdentifyEach, NamesTheFailedSwingAmongSeveral) {
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_FALSE(runs[i]);
     EXPECT_EQ(runs[i].error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(runs[i].error().message,
+    EXPECT_THAT(runs[i].error().message(),
                 StartsWith("two.csv: free swing " + std::to_string(i + 1) + ": there is no model 'magic'"));
   }
 }
@@ -239,7 +239,7 @@ TEST(IdentifyEach, GivesTheErrorOfASingleFailedSwingWithoutAPrefix) {
   const auto runs = FitTextbook(OptionsFor({"magic"}));
   ASSERT_FALSE(runs.at(0));
   EXPECT_EQ(runs[0].error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(runs[0].error().message, StartsWith("there is no model 'magic'"));
+  EXPECT_THAT(runs[0].error().message(), StartsWith("there is no model 'magic'"));
 }
 
 TEST(IdentifyEach, ExplainsMissingFitsAndClosedForms) {
@@ -250,7 +250,7 @@ TEST(IdentifyEach, ExplainsMissingFitsAndClosedForms) {
   const auto runs = FitTextbook(options);
   ASSERT_FALSE(runs.at(0));
   EXPECT_EQ(runs[0].error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(runs[0].error().message, HasSubstr("turn"));
+  EXPECT_THAT(runs[0].error().message(), HasSubstr("turn"));
 }
 
 }  // namespace

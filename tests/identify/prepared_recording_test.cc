@@ -23,22 +23,26 @@ using testing::StartsWith;
 
 // ---- ErrorOfRun ----------------------------------------------------------------------------------------------------
 
-std::string MessageAmong(const std::string& message, const std::string& path, int release) {
-  const Status status = ErrorOfRun({StatusCode::kFailedPrecondition, message}, path, release).value();
+std::string MessageAmong(const std::string& place, const std::string& path, int release) {
+  const Status status = ErrorOfRun({StatusCode::kFailedPrecondition, "no swing", place}, path, release).value();
   EXPECT_EQ(status.code, StatusCode::kFailedPrecondition);
-  return status.message;
+  return status.message();
 }
 
 TEST(ErrorOfRun, NamesTheRecordingOnce) {
-  EXPECT_EQ(MessageAmong("no swing", "a.csv", 0), "a.csv: no swing");
-  EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 0), "a.csv: no swing");
-  EXPECT_EQ(MessageAmong("a.csv:7: no number", "a.csv", 0), "a.csv:7: no number");
-  EXPECT_EQ(MessageAmong("no swing", "-", 0), "standard input: no swing");
+  EXPECT_EQ(MessageAmong("", "a.csv", 0), "a.csv: no swing");
+  EXPECT_EQ(MessageAmong("a.csv", "a.csv", 0), "a.csv: no swing");
+  EXPECT_EQ(MessageAmong("a.csv:7", "a.csv", 0), "a.csv:7: no swing");
+  EXPECT_EQ(MessageAmong("a.csv: # rig", "a.csv", 0), "a.csv: # rig: no swing");
+  EXPECT_EQ(MessageAmong("rig.json", "a.csv", 0), "a.csv: rig.json: no swing");
+  EXPECT_EQ(MessageAmong("", "-", 0), "standard input: no swing");
 }
 
 TEST(ErrorOfRun, NamesTheReleaseAfterTheRecording) {
-  EXPECT_EQ(MessageAmong("no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
-  EXPECT_EQ(MessageAmong("a.csv: no swing", "a.csv", 2), "a.csv: free swing 2: no swing");
+  EXPECT_EQ(MessageAmong("", "a.csv", 2), "a.csv: free swing 2: no swing");
+  EXPECT_EQ(MessageAmong("a.csv", "a.csv", 2), "a.csv: free swing 2: no swing");
+  EXPECT_EQ(MessageAmong("a.csv: # rig", "a.csv", 2), "a.csv: free swing 2: # rig: no swing");
+  EXPECT_EQ(MessageAmong("rig.json", "a.csv", 2), "a.csv: free swing 2: rig.json: no swing");
 }
 
 // ---- PrepareFile ---------------------------------------------------------------------------------------------------
@@ -77,7 +81,7 @@ class PrepareFileTest : public testing::Test {
 
 TEST_F(PrepareFileTest, UsesTheRigDescribedByTheRecording) {
   const auto one = Read(R"(# rig: {"gravity_torque": {"value": 1.8, "std_dev": 0.01}})");
-  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_TRUE(one) << one.error().message();
   ASSERT_TRUE(one->rig);
   EXPECT_EQ(one->rig->gravity_torque.value, 1.8);
   EXPECT_EQ(one->rig->gravity_torque.std_dev, 0.01);
@@ -88,7 +92,7 @@ TEST_F(PrepareFileTest, UsesTheRigDescribedByTheRecording) {
 
 TEST_F(PrepareFileTest, PrefersAGivenRig) {
   const auto one = Read(R"(# rig: {"gravity_torque": 1.8})", Rig{{2.5, 0}, {}, {}});
-  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_TRUE(one) << one.error().message();
   EXPECT_EQ(one->rig->gravity_torque.value, 2.5);
 }
 
@@ -96,7 +100,7 @@ TEST_F(PrepareFileTest, NamesWrongRigMetadata) {
   const auto one = Read(R"(# rig: {"gravity_torque": -1})");
   ASSERT_FALSE(one);
   EXPECT_EQ(one.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(one.error().message, StartsWith(path_ + ": # rig"));
+  EXPECT_THAT(one.error().message(), StartsWith(path_ + ": # rig"));
 }
 
 TEST_F(PrepareFileTest, DecidesTheSensor) {
@@ -108,7 +112,7 @@ TEST_F(PrepareFileTest, DecidesTheSensor) {
 
 TEST_F(PrepareFileTest, HasNoRigWithoutADescription) {
   const auto one = Read("# a comment");
-  ASSERT_TRUE(one) << one.error().message;
+  ASSERT_TRUE(one) << one.error().message();
   EXPECT_FALSE(one->rig);
 }
 

@@ -85,12 +85,12 @@ TEST(FindMotionModels, RefuseAModelThatContradictsTheGravity) {
   const auto linear = FindMotionModels("linear_coulomb", Gravity::kSine);
   ASSERT_FALSE(linear);
   EXPECT_EQ(
-      linear.error().message,
+      linear.error().message(),
       "model linear_coulomb has the restoring torque linear, but --gravity says sin; leave --gravity out, or give "
       "--model coulomb");
   const auto asymmetric = FindMotionModels("asymmetric", Gravity::kLinear);
   ASSERT_FALSE(asymmetric);
-  EXPECT_THAT(asymmetric.error().message, HasSubstr("model asymmetric cannot be combined with --gravity linear"));
+  EXPECT_THAT(asymmetric.error().message(), HasSubstr("model asymmetric cannot be combined with --gravity linear"));
   EXPECT_FALSE(FindMotionModels("linear,viscous", Gravity::kLinear));  // the same model twice
 }
 
@@ -99,9 +99,9 @@ TEST(FindMotionModel, ListsTheModelsForAnUnknownName) {
     const Result<MotionModel> model = FindMotionModel(wrong);
     ASSERT_FALSE(model) << wrong;
     EXPECT_EQ(model.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(model.error().message, HasSubstr("no model '" + std::string(wrong) + "'"));
+    EXPECT_THAT(model.error().message(), HasSubstr("no model '" + std::string(wrong) + "'"));
     for (const MotionModel& existing : MotionModels()) {
-      EXPECT_THAT(model.error().message, HasSubstr(std::string(existing.name)));
+      EXPECT_THAT(model.error().message(), HasSubstr(std::string(existing.name)));
     }
   }
 }

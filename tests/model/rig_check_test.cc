@@ -21,7 +21,7 @@ using testing::Not;
 
 Rig RigOf(const std::string& text) {
   const Result<Rig> rig = ParseRig(text, "rig.json");
-  EXPECT_TRUE(rig.has_value()) << (rig ? "" : rig.error().message);
+  EXPECT_TRUE(rig.has_value()) << (rig ? "" : rig.error().message());
   return rig.value_or(Rig());
 }
 
@@ -47,12 +47,12 @@ std::string Refusal(const Rig& rig, double gravity_over_inertia) {
   EXPECT_FALSE(compared.has_value());
   if (compared) return "";
   EXPECT_EQ(compared.error().code, StatusCode::kDataLoss);
-  return compared.error().message;
+  return compared.error().message();
 }
 
 std::vector<Warning> Compared(const Rig& rig, double gravity_over_inertia) {
   const auto compared = CompareRigWithSwing(rig, gravity_over_inertia);
-  EXPECT_TRUE(compared.has_value()) << (compared ? "" : compared.error().message);
+  EXPECT_TRUE(compared.has_value()) << (compared ? "" : compared.error().message());
   return compared.value_or(std::vector<Warning>());
 }
 

@@ -25,7 +25,7 @@ constexpr auto kTextbookRig = R"({"bob_mass": 0.380, "rod_mass": 0.095, "rod_len
 
 Rig RigOf(const std::string& text) {
   const Result<Rig> rig = ParseRig(text, "rig.json");
-  EXPECT_TRUE(rig.has_value()) << (rig ? "" : rig.error().message);
+  EXPECT_TRUE(rig.has_value()) << (rig ? "" : rig.error().message());
   return rig.value_or(Rig());
 }
 
@@ -33,9 +33,9 @@ std::string FaultOf(const std::string& text) {
   const Result<Rig> rig = ParseRig(text, "rig.json");
   EXPECT_FALSE(rig.has_value()) << text;
   if (rig) return "no fault";
-  EXPECT_EQ(rig.error().code, StatusCode::kDataLoss) << rig.error().message;
-  EXPECT_THAT(rig.error().message, StartsWith("rig.json:"));
-  return rig.error().message;
+  EXPECT_EQ(rig.error().code, StatusCode::kDataLoss) << rig.error().message();
+  EXPECT_THAT(rig.error().message(), StartsWith("rig.json:"));
+  return rig.error().message();
 }
 
 TEST(ParseRig, ReproducesTheTextbookRig) {
@@ -125,7 +125,7 @@ TEST(ParseRig, KnowsTheInertiaOfAPhysicalPendulum) {
 TEST(RigKeys, AreTheKeysThatARigMayHave) {
   for (const RigKey& key : RigKeys()) {
     const Result<Rig> rig = ParseRig("{\"" + std::string(key.name) + "\": 0.5}", "rig.json");
-    const std::string fault = rig ? "" : rig.error().message;
+    const std::string fault = rig ? "" : rig.error().message();
     EXPECT_THAT(fault, testing::AnyOf("", HasSubstr(" missing beside \"" + std::string(key.name) + "\""))) << key.name;
   }
 }
@@ -303,7 +303,7 @@ TEST(ReadRig, ReadsAFile) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "rig_test_read.json";
   std::ofstream(path) << "\xEF\xBB\xBF" << kTextbookRig << "\r\n";
   const Result<Rig> rig = ReadRig(path);
-  ASSERT_TRUE(rig.has_value()) << rig.error().message;
+  ASSERT_TRUE(rig.has_value()) << rig.error().message();
   EXPECT_NEAR(rig->gravity_torque.value, 1.80332325, 1e-12);
   std::filesystem::remove(path);
 }
@@ -312,14 +312,14 @@ TEST(ReadRig, ReportsAMissingFile) {
   const Result<Rig> rig = ReadRig("/nowhere/rig.json");
   ASSERT_FALSE(rig.has_value());
   EXPECT_EQ(rig.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(rig.error().message, "/nowhere/rig.json: there is no such file; check the path");
+  EXPECT_EQ(rig.error().message(), "/nowhere/rig.json: there is no such file; check the path");
 }
 
 TEST(ReadRig, RefusesADirectory) {
   const Result<Rig> rig = ReadRig(testing::TempDir());
   ASSERT_FALSE(rig.has_value());
   EXPECT_EQ(rig.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(rig.error().message, HasSubstr("this is a directory"));
+  EXPECT_THAT(rig.error().message(), HasSubstr("this is a directory"));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr const char* kRodAndBob = R"({"bob_mass": 0.4, "rod_mass": 0.1, "rod_le
 TEST(ParseRigWith, ReplacesValuesOfTheText) {
   std::vector<Warning> warnings;
   const auto rig = ParseRigWith({{"bob_mass", {{"value", 0.3}, {"std_dev", 0.001}}}}, kRodAndBob, "rig.json", warnings);
-  ASSERT_TRUE(rig) << rig.error().message;
+  ASSERT_TRUE(rig) << rig.error().message();
   EXPECT_THAT(warnings, IsEmpty());
   // G = (M + m/2) g l
   EXPECT_NEAR(rig->gravity_torque.value, 0.35 * 9.8 * 0.5, 1e-12);
@@ -30,7 +30,7 @@ TEST(ParseRigWith, ReplacesValuesOfTheText) {
 TEST(ParseRigWith, AssumesGravityIfItIsNeeded) {
   std::vector<Warning> warnings;
   const auto rig = ParseRigWith({}, R"({"mass": 0.5, "center_of_mass": 0.2})", "rig.json", warnings);
-  ASSERT_TRUE(rig) << rig.error().message;
+  ASSERT_TRUE(rig) << rig.error().message();
   EXPECT_NEAR(rig->gravity_torque.value, 0.5 * 0.2 * 9.806, 1e-12);
   ASSERT_EQ(warnings.size(), 1);
   EXPECT_EQ(warnings[0].code, "gravity_assumed");
@@ -38,9 +38,9 @@ TEST(ParseRigWith, AssumesGravityIfItIsNeeded) {
 
 TEST(ParseRigWith, RefusesAWrongText) {
   std::vector<Warning> warnings;
-  EXPECT_THAT(ParseRigWith({{"bob_mass", 0.3}}, "{", "rig.json", warnings).error().message,
+  EXPECT_THAT(ParseRigWith({{"bob_mass", 0.3}}, "{", "rig.json", warnings).error().message(),
               testing::StartsWith("rig.json:"));
-  EXPECT_THAT(ParseRigWith({{"mass", 0.3}}, kRodAndBob, "rig.json", warnings).error().message,
+  EXPECT_THAT(ParseRigWith({{"mass", 0.3}}, kRodAndBob, "rig.json", warnings).error().message(),
               testing::HasSubstr("belong to different descriptions"));
 }
 
@@ -48,7 +48,7 @@ TEST(RigOfValues, AssumesGravityIfItIsNeeded) {
   std::vector<Warning> warnings;
   const Json values = {{"bob_mass", 0.4}, {"rod_mass", 0.1}, {"rod_length", 0.5}};
   const auto rig = RigOfValues(values, warnings);
-  ASSERT_TRUE(rig) << rig.error().message;
+  ASSERT_TRUE(rig) << rig.error().message();
   EXPECT_NEAR(rig->gravity_torque.value, 0.45 * 9.806 * 0.5, 1e-12);
   EXPECT_NEAR(rig->gravity_torque.std_dev, 0.45 * 0.015 * 0.5, 1e-12);
   ASSERT_EQ(warnings.size(), 1);
@@ -68,7 +68,7 @@ TEST(RigOfValues, NamesAMissingValue) {
   const auto rig = RigOfValues({{"bob_mass", 0.4}, {"rod_length", 0.5}}, warnings);
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(rig.error().message,
+  EXPECT_EQ(rig.error().message(),
             "the rig given by flags: --rod_mass is missing beside --bob_mass; add it, 0 for a string");
   EXPECT_THAT(rig.error().try_flags, ElementsAre("--rod_mass 0g"));
   EXPECT_THAT(warnings, IsEmpty());
@@ -76,7 +76,7 @@ TEST(RigOfValues, NamesAMissingValue) {
 
 TEST(RigOfValues, NamesAllMissingValuesAtOnce) {
   std::vector<Warning> warnings;
-  EXPECT_EQ(RigOfValues({{"bob_mass", 0.4}}, warnings).error().message,
+  EXPECT_EQ(RigOfValues({{"bob_mass", 0.4}}, warnings).error().message(),
             "the rig given by flags: --rod_mass, --rod_length are missing beside --bob_mass; add them");
 }
 

@@ -35,7 +35,7 @@ struct Points {
 TEST(FitArc, FindsTheCircleOfExactPoints) {
   const Points points(0.3, 0, 1);
   const Result<Arc> arc = FitArc(points.x, points.y);
-  ASSERT_TRUE(arc) << arc.error().message;
+  ASSERT_TRUE(arc) << arc.error().message();
   EXPECT_THAT(arc->x, DoubleNear(640, 1e-6));
   EXPECT_THAT(arc->y, DoubleNear(120, 1e-6));
   EXPECT_THAT(arc->radius, DoubleNear(400, 1e-6));
@@ -46,7 +46,7 @@ TEST(FitArc, FindsTheCircleOfExactPoints) {
 TEST(FitArc, DetectsTheDirectionOfY) {
   const Points points(0.3, 0, 1);
   const Result<Arc> arc = FitArc(points.x, -points.y);
-  ASSERT_TRUE(arc) << arc.error().message;
+  ASSERT_TRUE(arc) << arc.error().message();
   EXPECT_EQ(arc->down, -1);
   EXPECT_THAT(arc->Angle(640 + 400 * std::sin(0.2), -120 - 400 * std::cos(0.2)), DoubleNear(0.2, 1e-8));
 }
@@ -59,7 +59,7 @@ TEST(FitArc, HasErrorsThatMatchTheCovariance) {
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     const Points points(0.5, 0.5, seed);
     const Result<Arc> arc = FitArc(points.x, points.y);
-    ASSERT_TRUE(arc) << arc.error().message;
+    ASSERT_TRUE(arc) << arc.error().message();
     const Eigen::Vector3d error(arc->x - 640, arc->y - 120, arc->radius - 400);
     sum += error.dot(arc->covariance.inverse() * error);
   }
@@ -74,7 +74,7 @@ TEST(FitArc, RefusesTooFewPoints) {
     const Points points(0.3, 0, 1);
     const Result<Arc> arc = FitArc(points.x.head(count), points.y.head(count));
     ASSERT_FALSE(arc) << count;
-    EXPECT_THAT(arc.error().message, HasSubstr("there are fewer than 4"));
+    EXPECT_THAT(arc.error().message(), HasSubstr("there are fewer than 4"));
   }
 }
 
@@ -85,7 +85,7 @@ TEST(FitArc, RefusesPointsWithoutADownDirection) {
     const Result<Arc> arc = FitArc(points.x, points.y);
     ASSERT_FALSE(arc) << half;
     EXPECT_EQ(arc.error().code, StatusCode::kFailedPrecondition);
-    EXPECT_THAT(arc.error().message, HasSubstr("the downward direction is unknown; choose one coordinate with"));
+    EXPECT_THAT(arc.error().message(), HasSubstr("the downward direction is unknown; choose one coordinate with"));
   }
 }
 
@@ -94,7 +94,7 @@ TEST(FitArc, RefusesPointsThatDetermineNoPivot) {
   const Result<Arc> arc = FitArc(points.x, points.y);
   ASSERT_FALSE(arc);
   EXPECT_EQ(arc.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(arc.error().message, HasSubstr("do not determine a circle about a pivot"));
+  EXPECT_THAT(arc.error().message(), HasSubstr("do not determine a circle about a pivot"));
   const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(100, 0, 1);
   EXPECT_FALSE(FitArc(line, 2 * line));
   EXPECT_FALSE(FitArc(Eigen::VectorXd::Ones(100), Eigen::VectorXd::Ones(100)));

@@ -17,7 +17,7 @@ inline constexpr const char* kReferenceTable =
 
 inline CalibrationTable TableOf(const std::string& text) {
   const Result<CalibrationTable> table = ParseCalibrationTable(text, "table.csv");
-  EXPECT_TRUE(table.has_value()) << text << (table ? "" : table.error().message);
+  EXPECT_TRUE(table.has_value()) << text << (table ? "" : table.error().message());
   return table.value_or(CalibrationTable());
 }
 

@@ -44,7 +44,7 @@ double Hundredth(int i) { return i / 100.0; }
 
 RawSamples Repaired(const RawSamples& samples) {
   const Result<RawSamples> repaired = RepairClock(samples);
-  EXPECT_TRUE(repaired.has_value()) << (repaired ? "" : repaired.error().message);
+  EXPECT_TRUE(repaired.has_value()) << (repaired ? "" : repaired.error().message());
   return repaired.value_or(RawSamples());
 }
 
@@ -61,7 +61,7 @@ std::string FaultOf(const RawSamples& samples) {
   EXPECT_FALSE(repaired.has_value());
   if (repaired) return "";
   EXPECT_EQ(repaired.error().code, StatusCode::kDataLoss);
-  return repaired.error().message;
+  return repaired.error().message();
 }
 
 void ExpectUntouched(const RawSamples& samples) {
@@ -483,8 +483,8 @@ TEST(RepairClock, RefusesPacketsWithLostRowsOrWarns) {
       Randomness random(seed);
       const Result<RawSamples> repaired = RepairClock(Transferred(transfer, transfer.rate_hz, random));
       if (!repaired) {
-        EXPECT_THAT(repaired.error().message, testing::HasSubstr("so rows are missing or the rate changes"));
-        EXPECT_THAT(repaired.error().message, testing::Not(testing::HasSubstr("--sample_rate_hz")));
+        EXPECT_THAT(repaired.error().message(), testing::HasSubstr("so rows are missing or the rate changes"));
+        EXPECT_THAT(repaired.error().message(), testing::Not(testing::HasSubstr("--sample_rate_hz")));
         EXPECT_THAT(repaired.error().try_flags, IsEmpty());
         continue;
       }
@@ -541,7 +541,7 @@ TEST(RepairClock, SuggestsTheRateOfFewPackets) {
   const Result<RawSamples> repaired =
       RepairClock(Rows(Stamps(1500, stamp), "s", Stamps(1500, [](int i) { return std::cos(0.05 * i); })));
   ASSERT_FALSE(repaired.has_value());
-  EXPECT_THAT(repaired.error().message,
+  EXPECT_THAT(repaired.error().message(),
               testing::HasSubstr("; the times suggest 100 Hz, but too few of them differ to prove that the sampling is "
                                  "uniform. If it is, give --sample_rate_hz 100 with --time_column none"));
   EXPECT_THAT(repaired.error().try_flags, ElementsAre("--sample_rate_hz 100", "--time_column none"));
@@ -591,7 +591,7 @@ TEST(RepairClock, JudgesTheWindowIfTheWholeFileCannotBeRepaired) {
             "900 rows were read; run.csv:602: time 0 ms follows 5990 ms, so the clock was set back: these are two "
             "recordings in "
             "one file; split it before this line");
-  EXPECT_EQ(RepairClock(samples, {1, 20}).error().message, RepairClock(samples).error().message);
+  EXPECT_EQ(RepairClock(samples, {1, 20}).error().message(), RepairClock(samples).error().message());
 }
 
 // ---- Stamps that repeat ------------------------------------------------------------------------------------------
@@ -702,7 +702,7 @@ TEST(RepairClock, RefusesRowsThatAreFarFromAllOthers) {
       std::ranges::sort(times);
       const auto repaired = RepairClock(Rows(times));
       ASSERT_FALSE(repaired) << wrong[0] << ", " << size;
-      EXPECT_THAT(repaired.error().message, testing::HasSubstr("rows are 0.01 s apart; correct or remove this row"));
+      EXPECT_THAT(repaired.error().message(), testing::HasSubstr("rows are 0.01 s apart; correct or remove this row"));
     }
   }
 }

@@ -44,7 +44,7 @@ TEST(FindCountLevels, KnowsWholeCounts) {
   for (const char* resolution : {"", "# resolution: 0.25\n", "# resolution: 1\n"}) {
     const auto recording =
         ParseRecording(File(std::string("# oversample: 4\n") + resolution, "adc_counts", 1), "run.csv");
-    ASSERT_TRUE(recording) << recording.error().message;
+    ASSERT_TRUE(recording) << recording.error().message();
     EXPECT_EQ(recording->oversampling.readings, 4);
     EXPECT_EQ(recording->oversampling.count, 1);
     EXPECT_TRUE(recording->oversampling.is_level_known);
@@ -56,7 +56,7 @@ TEST(FindCountLevels, KnowsWholeCounts) {
 
 TEST(FindCountLevels, FindsTheGridOfAngles) {
   const auto recording = ParseRecording(File("# oversample: 4\n# resolution: 0.05\n", "angle_rad", 0.2), "run.csv");
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_NEAR(recording->oversampling.count, 0.2, 1e-12);
   EXPECT_FALSE(recording->oversampling.is_level_known);
   EXPECT_NEAR(std::remainder(recording->oversampling.level, 0.05), 0, 1e-6);
@@ -64,7 +64,7 @@ TEST(FindCountLevels, FindsTheGridOfAngles) {
 
 TEST(FindCountLevels, IsWithoutMeansTheResolution) {
   const auto recording = ParseRecording(File("# resolution: 0.25\n", "adc_counts", 1), "run.csv");
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_EQ(recording->oversampling.readings, 1);
   EXPECT_EQ(recording->oversampling.count, 0);
   EXPECT_EQ(CountOf(*recording), 0.25);
@@ -72,7 +72,7 @@ TEST(FindCountLevels, IsWithoutMeansTheResolution) {
 
 TEST(ReadRecording, MovesTimesToTheMiddleOfTheWindow) {
   const auto recording = ParseRecording(File("# oversample: 4\n# window_s: 0,0.008\n", "adc_counts", 1), "run.csv");
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_NEAR(recording->time[0], 0.004, 1e-12);
   ASSERT_TRUE(recording->oversampling.window);
   EXPECT_NEAR(recording->oversampling.window->from, -0.004, 1e-12);
@@ -84,7 +84,7 @@ TEST(ReadRecording, SaysThatAFlagContradictsTheFile) {
   options.averaging_window = AveragingWindow{-0.001, 0.001};
   const auto recording = ParseRecording(
       File("# oversample: 4\n# window_s: 0.004\n# resolution: 0.25\n", "adc_counts", 1), "run.csv", options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_EQ(recording->oversampling.readings, 16);
   int said = 0;
   for (const Warning& warning : recording->warnings) said += warning.code == "averaging_disagrees" ? 1 : 0;
@@ -95,7 +95,7 @@ TEST(ReadRecording, RefusesImpossibleMeans) {
   for (const char* line : {"# oversample: 0\n", "# oversample: 65\n", "# oversample: 2.5\n", "# window_s: 2\n"}) {
     const auto recording = ParseRecording(File(line, "adc_counts", 1), "run.csv");
     ASSERT_FALSE(recording) << line;
-    EXPECT_NE(recording.error().message.find("must be"), std::string::npos) << recording.error().message;
+    EXPECT_NE(recording.error().message().find("must be"), std::string::npos) << recording.error().message();
   }
 }
 

@@ -52,7 +52,7 @@ TEST(MakeRecording, KeepsAValidRecordingUnchanged) {
 TEST(MakeRecording, RefusesFewerThanEightSamples) {
   const Status fault = FaultOf(Ramp(7));
   EXPECT_EQ(fault.code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(fault.message, "7 samples are too few for a recording; at least 8 are needed");
+  EXPECT_EQ(fault.message(), "7 samples are too few for a recording; at least 8 are needed");
 }
 
 TEST(MakeRecording, RefusesAnEmptyRecording) { EXPECT_EQ(FaultOf(Recording()).code, StatusCode::kFailedPrecondition); }
@@ -62,7 +62,7 @@ TEST(MakeRecording, RefusesTimesAndValuesOfDifferentNumber) {
   recording.value.conservativeResize(8);
   const Status fault = FaultOf(recording);
   EXPECT_EQ(fault.code, StatusCode::kDataLoss);
-  EXPECT_THAT(fault.message, HasSubstr("9 times and 8 values"));
+  EXPECT_THAT(fault.message(), HasSubstr("9 times and 8 values"));
 }
 
 TEST(MakeRecording, NamesTheFirstNonFiniteSample) {
@@ -71,11 +71,11 @@ TEST(MakeRecording, NamesTheFirstNonFiniteSample) {
     recording.value[3] = bad;
     recording.value[5] = bad;
     EXPECT_EQ(FaultOf(recording).code, StatusCode::kDataLoss);
-    EXPECT_THAT(FaultOf(recording).message, StartsWith("sample 3 is (3, "));
+    EXPECT_THAT(FaultOf(recording).message(), StartsWith("sample 3 is (3, "));
 
     recording = Ramp(9);
     recording.time[0] = bad;
-    EXPECT_THAT(FaultOf(recording).message, StartsWith("sample 0 is ("));
+    EXPECT_THAT(FaultOf(recording).message(), StartsWith("sample 0 is ("));
   }
 }
 
@@ -85,7 +85,7 @@ TEST(MakeRecording, NamesTheFirstTimeThatDoesNotIncreaseAndThePath) {
   recording.time[4] = 3.0;
   const Status fault = FaultOf(recording);
   EXPECT_EQ(fault.code, StatusCode::kDataLoss);
-  EXPECT_EQ(fault.message, "swing.csv: time 3 s of sample 4 does not follow 3 s; times must increase");
+  EXPECT_EQ(fault.message(), "swing.csv: time 3 s of sample 4 does not follow 3 s; times must increase");
 }
 
 TEST(MakeRecording, RefusesAnInvalidResolution) {
@@ -93,7 +93,7 @@ TEST(MakeRecording, RefusesAnInvalidResolution) {
     Recording recording = Ramp(9);
     recording.resolution = bad;
     EXPECT_EQ(FaultOf(recording).code, StatusCode::kDataLoss);
-    EXPECT_THAT(FaultOf(recording).message, StartsWith("the resolution is " + NumberText(bad)));
+    EXPECT_THAT(FaultOf(recording).message(), StartsWith("the resolution is " + NumberText(bad)));
   }
 }
 

@@ -29,7 +29,7 @@ inline std::string Rows(const std::string& pattern, int count = 8) {
 
 inline Recording RecordingOf(const std::string& text, const ReadOptions& options = {}) {
   const Result<Recording> recording = ParseRecording(text, "run.csv", options);
-  EXPECT_TRUE(recording.has_value()) << text << (recording ? "" : recording.error().message);
+  EXPECT_TRUE(recording.has_value()) << text << (recording ? "" : recording.error().message());
   return recording.value_or(Recording());
 }
 
@@ -47,8 +47,8 @@ inline std::string FaultOf(const std::string& text, const ReadOptions& options =
   const Result<Recording> recording = ParseRecording(text, "run.csv", options);
   EXPECT_FALSE(recording.has_value()) << text;
   if (recording) return "";
-  EXPECT_EQ(recording.error().code, code) << recording.error().message;
-  return recording.error().message;
+  EXPECT_EQ(recording.error().code, code) << recording.error().message();
+  return recording.error().message();
 }
 
 inline std::string WrongFlag(const std::string& text, const ReadOptions& options) {

@@ -41,7 +41,7 @@ Recording Read(const std::string& head, int rows = 40) {
     text += std::to_string(20 * i) + "," + std::to_string(500 + (i % 2 == 0 ? 200 : -200)) + "\n";
   }
   const Result<Recording> recording = ParseRecording(text, "run.csv");
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   return recording.value_or(Recording());
 }
 
@@ -209,7 +209,7 @@ TEST(ReadRecording, TakesAnotherTextAfterSensorAsAComment) {
 TEST(ReadRecording, RefusesAWrongStatementWithItsLine) {
   const auto fault = [](const std::string& head) {
     const auto recording = ParseRecording(head + "time_ms,adc_counts\n0,1\n1,2\n", "run.csv");
-    return recording ? "" : recording.error().message;
+    return recording ? "" : recording.error().message();
   };
   EXPECT_EQ(fault("# a\n# sensor: {\"gian\": 1}\n"),
             "run.csv:2: # sensor: \"gian\" is not a key of a sensor; the keys are kind, gain, nonlinearity, lag, "

@@ -18,8 +18,8 @@ std::string FaultOf(const std::string& text) {
   EXPECT_FALSE(statement.has_value()) << text;
   if (statement) return "";
   EXPECT_EQ(statement.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(statement.error().message, StartsWith("sensor.json:"));
-  return statement.error().message;
+  EXPECT_THAT(statement.error().message(), StartsWith("sensor.json:"));
+  return statement.error().message();
 }
 
 std::optional<double> StdDev(const SensorStatement& statement, SensorEffect effect) {
@@ -45,7 +45,7 @@ TEST(ParseSensorStatement, ReadsEveryKey) {
       R"({"schema_version": 1, "kind": "encoder", "gain": 0.003, "nonlinearity": 0.002, "lag": 0.01, "backlash": 0,
           "drift": 10, "clock": 5e-5})",
       "sensor.json", "given by --sensor");
-  ASSERT_TRUE(statement) << statement.error().message;
+  ASSERT_TRUE(statement) << statement.error().message();
   EXPECT_EQ(statement->kind, "encoder");
   EXPECT_EQ(statement->source, "given by --sensor");
   EXPECT_EQ(StdDev(*statement, SensorEffect::kGain), 0.003);
@@ -60,7 +60,7 @@ TEST(ParseSensorStatement, ReadsEveryKey) {
 
 TEST(ParseSensorStatement, LeavesNullAndMissingKeysOpen) {
   const auto statement = ParseSensorStatement(R"({"gain": 0.01, "lag": null, "kind": null})", "sensor.json", "given");
-  ASSERT_TRUE(statement) << statement.error().message;
+  ASSERT_TRUE(statement) << statement.error().message();
   EXPECT_TRUE(statement->kind.empty());
   EXPECT_EQ(StdDev(*statement, SensorEffect::kGain), 0.01);
   EXPECT_FALSE(StdDev(*statement, SensorEffect::kLag));

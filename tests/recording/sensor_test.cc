@@ -28,7 +28,7 @@ std::string With(const std::string& key, const std::string& value) {
 
 Calibration CalibrationOf(const std::string& text) {
   const Result<Calibration> calibration = ParseCalibration(text, "cal.json");
-  EXPECT_TRUE(calibration.has_value()) << (calibration ? "" : calibration.error().message);
+  EXPECT_TRUE(calibration.has_value()) << (calibration ? "" : calibration.error().message());
   return calibration.value_or(Calibration());
 }
 
@@ -37,7 +37,7 @@ std::string FaultOf(const std::string& text) {
   EXPECT_FALSE(calibration.has_value()) << text;
   if (calibration) return "";
   EXPECT_EQ(calibration.error().code, StatusCode::kDataLoss);
-  return calibration.error().message;
+  return calibration.error().message();
 }
 
 TEST(ParseCalibration, ReadsEveryKey) {
@@ -172,7 +172,7 @@ TEST(ReadCalibration, ReadsAFileAndReportsAMissingFile) {
   const Result<Calibration> missing = ReadCalibration("/nowhere/cal.json");
   ASSERT_FALSE(missing.has_value());
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(missing.error().message, "/nowhere/cal.json: there is no such file; check the path");
+  EXPECT_EQ(missing.error().message(), "/nowhere/cal.json: there is no such file; check the path");
 }
 
 }  // namespace

@@ -72,13 +72,13 @@ TEST(SelectWindow, RefusesAStartNotBeforeTheEnd) {
   EXPECT_EQ(FaultOf(15.0, 12.0).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(15.0, 15.0).code, StatusCode::kInvalidArgument);
   EXPECT_EQ(FaultOf(kInf, kOpen).code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(FaultOf(15.0, 12.5).message, "the window [15, 12.5] s is empty; its start must be before its end");
+  EXPECT_EQ(FaultOf(15.0, 12.5).message(), "the window [15, 12.5] s is empty; its start must be before its end");
 }
 
 TEST(SelectWindow, RefusesFewerThanEightSamplesAndNamesTheSpans) {
   const Status fault = FaultOf(12.0, 15.0);  // 12, 12.5, ..., 15: seven samples.
   EXPECT_EQ(fault.code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(fault.message,
+  EXPECT_EQ(fault.message(),
             "swing.csv: the window [12, 15] s leaves 7 samples of a recording that spans [10, 20] s; at least 8 are "
             "needed: widen the window");
 }

@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 std::string PlotOf(const CalibrationTable& table) {
   const auto fit = CalibrateSensor(table, 1);
-  EXPECT_TRUE(fit) << fit.error().message;
+  EXPECT_TRUE(fit) << fit.error().message();
   return fit ? CalibrationPlot(table, *fit) : "";
 }
 

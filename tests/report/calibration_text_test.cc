@@ -31,7 +31,7 @@ std::string Unwrapped(const std::string& text) {
 
 std::string TextOf(const CalibrationTable& table, int order, const std::optional<SensorRange>& range = std::nullopt) {
   const auto fit = CalibrateSensor(table, order, range);
-  EXPECT_TRUE(fit) << fit.error().message;
+  EXPECT_TRUE(fit) << fit.error().message();
   return fit ? CalibrationText(table, *fit) : "";
 }
 

@@ -162,9 +162,10 @@ bool SaysWhatToDo(const std::string& message) {
 }
 
 Outcome CheckRefusal(const Status& status) {
-  EXPECT_TRUE(status.code == StatusCode::kFailedPrecondition || status.code == StatusCode::kDataLoss) << status.message;
-  EXPECT_THAT(status.message, testing::Not(testing::HasSubstr("start values")));
-  EXPECT_TRUE(SaysWhatToDo(status.message)) << status.message;
+  EXPECT_TRUE(status.code == StatusCode::kFailedPrecondition || status.code == StatusCode::kDataLoss)
+      << status.message();
+  EXPECT_THAT(status.message(), testing::Not(testing::HasSubstr("start values")));
+  EXPECT_TRUE(SaysWhatToDo(status.message())) << status.message();
   return Outcome::kRefused;
 }
 

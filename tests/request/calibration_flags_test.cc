@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 TEST(MakeCalibrationOptions, SetsTheFullScaleOfAConverter) {
   const auto options = MakeCalibrationOptions({.order = 2, .input_range = "", .bits = 10});
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->order, 2);
   EXPECT_TRUE(options->has_bits);
   EXPECT_EQ(options->input_range->low, 0);
@@ -34,16 +34,16 @@ TEST(MakeCalibrationOptions, NamesTheWrongFlag) {
     const auto options = MakeCalibrationOptions(flags);
     ASSERT_FALSE(options) << message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument) << message;
-    EXPECT_THAT(options.error().message, HasSubstr(message));
+    EXPECT_THAT(options.error().message(), HasSubstr(message));
   }
 }
 
 TEST(CalibrateTable, RefusesARangeOfCountsForVolts) {
   const auto table = ParseCalibrationTable("volts,angle_deg\n1,-30\n2,0\n3,30\n", "table.csv");
-  ASSERT_TRUE(table) << table.error().message;
+  ASSERT_TRUE(table) << table.error().message();
   const auto fit = CalibrateTable(*table, *MakeCalibrationOptions({.order = 1, .input_range = "", .bits = 10}));
   ASSERT_FALSE(fit);
-  EXPECT_EQ(fit.error().message, "--bits defines the range of counts, but table.csv has volts; give --input_range");
+  EXPECT_EQ(fit.error().message(), "--bits defines the range of counts, but table.csv has volts; give --input_range");
   EXPECT_TRUE(CalibrateTable(*table, *MakeCalibrationOptions({})));
 }
 

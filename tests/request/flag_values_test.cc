@@ -32,7 +32,7 @@ TEST(ParseNumber, NamesFlagValueAndMeaning) {
   for (const char* wrong : {"", "1,5", "1 s", "nan", "inf", "1e999", "+1"}) {
     const auto number = ParseNumber("--from", wrong, "a time in seconds");
     ASSERT_FALSE(number) << wrong;
-    EXPECT_EQ(number.error().message, "--from is '" + std::string(wrong) + "'; it must be a time in seconds");
+    EXPECT_EQ(number.error().message(), "--from is '" + std::string(wrong) + "'; it must be a time in seconds");
   }
 }
 
@@ -66,7 +66,7 @@ TEST(ParseSettings, NamesTheFlagAndTheFault) {
     const auto settings = ParseSettings("--set", text, "viscous", kSettable);
     ASSERT_FALSE(settings) << text;
     EXPECT_EQ(settings.error().code, StatusCode::kInvalidArgument) << text;
-    EXPECT_EQ(settings.error().message, message);
+    EXPECT_EQ(settings.error().message(), message);
   }
 }
 
@@ -100,7 +100,7 @@ TEST(ParseRanges, NamesTheFlagAndTheFault) {
     const auto ranges = ParseRanges("--bounds", text, "viscous", kSettable);
     ASSERT_FALSE(ranges) << text;
     EXPECT_EQ(ranges.error().code, StatusCode::kInvalidArgument) << text;
-    EXPECT_EQ(ranges.error().message, message);
+    EXPECT_EQ(ranges.error().message(), message);
   }
 }
 
@@ -133,7 +133,7 @@ TEST(ParsePriors, NamesTheFlagAndTheFault) {
     const auto priors = ParsePriors("--prior", text, "viscous", kSettable);
     ASSERT_FALSE(priors) << text;
     EXPECT_EQ(priors.error().code, StatusCode::kInvalidArgument) << text;
-    EXPECT_EQ(priors.error().message, message);
+    EXPECT_EQ(priors.error().message(), message);
   }
 }
 

@@ -22,7 +22,7 @@ template <typename Flags>
 void ExpectRefused(const Result<Flags>& flags, const std::string& message) {
   ASSERT_FALSE(flags) << message;
   EXPECT_EQ(flags.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(flags.error().message, message);
+  EXPECT_EQ(flags.error().message(), message);
 }
 
 // ---- Names ---------------------------------------------------------------------------------------------------------
@@ -49,8 +49,8 @@ TEST(CheckFlagName, SuggestsTheNearestName) {
   const auto near = CheckFlagName("modle", names);
   ASSERT_FALSE(near);
   EXPECT_EQ(near.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(near.error().message, "--modle is not a flag of this request; did you mean --model?");
-  EXPECT_EQ(CheckFlagName("quicksort", names).error().message,
+  EXPECT_EQ(near.error().message(), "--modle is not a flag of this request; did you mean --model?");
+  EXPECT_EQ(CheckFlagName("quicksort", names).error().message(),
             "--quicksort is not a flag of this request; GET /openapi.json lists the flags");
 }
 
@@ -58,7 +58,7 @@ TEST(CheckFlagName, SuggestsTheNearestName) {
 
 TEST(RunFlagsOf, KeepsDefaultsForMissingFlags) {
   const auto flags = RunFlagsOf({});
-  ASSERT_TRUE(flags) << flags.error().message;
+  ASSERT_TRUE(flags) << flags.error().message();
   EXPECT_EQ(flags->model, "");  // Coulomb, unless the recording shows a spring.
   EXPECT_EQ(flags->start, "auto");
   EXPECT_EQ(flags->release, "");
@@ -92,7 +92,7 @@ TEST(RunFlagsOf, StoresEachFlagInItsMember) {
       {"seed", &RunFlags::seed}};
   for (const auto& [name, place] : places) {
     const auto flags = RunFlagsOf({{name, "its text, as it is"}});
-    ASSERT_TRUE(flags) << flags.error().message;
+    ASSERT_TRUE(flags) << flags.error().message();
     const RunFlags defaults;
     for (const auto& [other, member] : places) {
       EXPECT_EQ((*flags).*member, member == place ? "its text, as it is" : defaults.*member) << name << ", " << other;
@@ -118,7 +118,8 @@ TEST(RunFlagsOf, RefusesUnknownFlags) {
   for (const char* name : {"rig", "calibration", "threads", "data", "json", "report", "Model", ""}) {
     const auto flags = RunFlagsOf({{name, "1"}});
     ASSERT_FALSE(flags) << name;
-    EXPECT_THAT(flags.error().message, HasSubstr(std::string("--") + name + " is not a flag of this request")) << name;
+    EXPECT_THAT(flags.error().message(), HasSubstr(std::string("--") + name + " is not a flag of this request"))
+        << name;
   }
 }
 
@@ -145,7 +146,7 @@ TEST(SimulationFlagsOf, AcceptsTextsNumbersAndIntegers) {
                                         {"oversample", "16"},
                                         {"window_s", "0.001953125"},
                                         {"seed", "18446744073709551615"}});
-  ASSERT_TRUE(flags) << flags.error().message;
+  ASSERT_TRUE(flags) << flags.error().message();
   EXPECT_EQ(flags->model, "drag");
   EXPECT_EQ(flags->gravity, "linear");
   EXPECT_EQ(flags->set, "inertia=0.1");
@@ -173,7 +174,7 @@ TEST(SimulationFlagsOf, RefusesInvalidNumbers) {
     const auto flags = SimulationFlagsOf({{"duration", text}});
     ASSERT_FALSE(flags) << text;
     EXPECT_EQ(flags.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(flags.error().message, HasSubstr("--duration")) << text;
+    EXPECT_THAT(flags.error().message(), HasSubstr("--duration")) << text;
   }
   for (const char* text : {"-1", "1.0", "18446744073709551616", "0x1", " 1"}) {
     ExpectRefused(SimulationFlagsOf({{"seed", text}}), std::string("--seed is '") + text + "'; it must be an integer");
@@ -186,7 +187,7 @@ TEST(SimulationFlagsOf, RefusesInvalidNumbers) {
 
 TEST(CalibrationFlagsOf, AcceptsItsFlags) {
   const auto flags = CalibrationFlagsOf({{"order", "2"}, {"bits", "10"}});
-  ASSERT_TRUE(flags) << flags.error().message;
+  ASSERT_TRUE(flags) << flags.error().message();
   EXPECT_EQ(flags->order, 2);
   EXPECT_EQ(flags->bits, 10);
   EXPECT_EQ(flags->input_range, "");

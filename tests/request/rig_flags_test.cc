@@ -18,14 +18,14 @@ const RigKey& KeyOf(std::string_view flag) { return *std::ranges::find(RigKeys()
 
 RigValue ValueOf(const std::string& text, std::string_view flag) {
   const auto value = ParseRigValue("--" + std::string(flag), text, KeyOf(flag));
-  EXPECT_TRUE(value) << (value ? "" : value.error().message);
+  EXPECT_TRUE(value) << (value ? "" : value.error().message());
   return value.value_or(RigValue{-1, -1});
 }
 
 std::string Refusal(const std::string& text, std::string_view flag) {
   const auto value = ParseRigValue("--" + std::string(flag), text, KeyOf(flag));
   EXPECT_FALSE(value);
-  return value ? "" : value.error().message;
+  return value ? "" : value.error().message();
 }
 
 TEST(ParseRigValue, ConvertsUnits) {
@@ -70,7 +70,7 @@ TEST(MakeIdentifyOptions, TakesTheValuesOfTheRig) {
     if (flag.name == "g") *std::get<std::string*>(flag.In(flags)) = "9.81+-0.01";
   }
   const auto options = MakeIdentifyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->rig_values,
             nlohmann::ordered_json::parse(R"({"bob_mass": 0.38, "gravity": {"value": 9.81, "std_dev": 0.01}})"));
   ASSERT_EQ(options->notes.size(), 1);
@@ -94,7 +94,7 @@ TEST(MakeIdentifyOptions, AsksForTheUnitOfMassesTooHeavyInKg) {
   };
   const auto refused = options_of("412", "88+-1");
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("--bob_mass 412, --rod_mass 88+-1 have no unit"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("--bob_mass 412, --rod_mass 88+-1 have no unit"));
   EXPECT_THAT(refused.error().try_flags, testing::ElementsAre("--bob_mass 412g", "--rod_mass 88+-1g"));
   EXPECT_TRUE(options_of("412kg", "88g").has_value());
   EXPECT_TRUE(options_of("9", "0.088").has_value());

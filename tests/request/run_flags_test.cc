@@ -24,7 +24,7 @@ std::string Refusal(const RunFlags& flags) {
   const auto options = MakeIdentifyOptions(flags);
   if (options) return "";
   EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
-  return options.error().message;
+  return options.error().message();
 }
 
 /// The default flags, except for a valid value of `flag`.
@@ -46,7 +46,7 @@ TEST(RunFlagTable, HasOnlyFlagsThatChangeTheStoredOptions) {
   for (const RunFlag& flag : RunFlagTable()) {
     if (flag.is_local) continue;
     const auto options = MakeIdentifyOptions(With(flag));
-    ASSERT_TRUE(options) << options.error().message;
+    ASSERT_TRUE(options) << options.error().message();
     EXPECT_TRUE(known.insert(OptionsJson(*options)).second) << flag.name;
   }
 }
@@ -68,7 +68,7 @@ TEST(MakeIdentifyOptions, AcceptsModelsWindowAndParameters) {
   flags.fix = "viscous=0.003";
   flags.unit = "counts";
   const auto options = MakeIdentifyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_THAT(options->models, ElementsAre("viscous", "drag"));
   EXPECT_EQ(options->swing.from, 1.5);
   EXPECT_EQ(options->swing.to, 20);
@@ -80,12 +80,12 @@ TEST(MakeIdentifyOptions, GivesTheModelsALinearRestoringTorque) {
   RunFlags flags;
   flags.gravity = "linear";
   auto options = MakeIdentifyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_THAT(options->models, ElementsAre("linear_coulomb"));
   EXPECT_EQ(options->fit.gravity, Gravity::kLinear);
   flags.model = "viscous,drag";
   options = MakeIdentifyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_THAT(options->models, ElementsAre("linear", "linear_drag"));
   flags.model = "linear_coulomb";
   flags.gravity = "sin";
@@ -127,7 +127,7 @@ TEST(MakeIdentifyOptions, TakesAKindOrJsonForTheSensor) {
   EXPECT_EQ(MakeIdentifyOptions(flags)->sensor->kind, "angle sensor");
   flags.sensor = R"({"gain": 0.002})";
   const auto options = MakeIdentifyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->sensor->std_devs[0], 0.002);
   EXPECT_EQ(options->sensor->source, "given by --sensor");
   EXPECT_THAT(OptionsJson(*options), HasSubstr(R"("sensor":{"kind":"","gain":0.002})"));
@@ -173,12 +173,13 @@ TEST(ReadSensorFile, NamesTheFileInErrors) {
   const auto wrong = ReadSensorFile(flags);
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(wrong.error().message, HasSubstr(file.path() + ": \"gian\" is not a key of a sensor"));
+  EXPECT_THAT(wrong.error().message(), HasSubstr(file.path() + ": \"gian\" is not a key of a sensor"));
   flags.sensor = "gyroscope";
   const auto missing = ReadSensorFile(flags);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
-  EXPECT_THAT(missing.error().message, HasSubstr("--sensor takes a file or a kind of sensor: potentiometer, encoder"));
+  EXPECT_THAT(missing.error().message(),
+              HasSubstr("--sensor takes a file or a kind of sensor: potentiometer, encoder"));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(MakeSimulation, DividesTorquesAndInertiaByTheRigsGravityTorque) {
       Flags("release_angle=0.4,inertia=0.06,viscous=0.003,coulomb=0.005,drag=0.001,release_time=1.5");
   flags.model = "drag";
   const Result<Simulation> simulation = MakeSimulation(flags, RoundRig());
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_THAT(simulation->synthetic.parameters,
               ElementsAre(DoubleEq(0.03), DoubleEq(0.0015), DoubleEq(0.0025), DoubleEq(0.0005)));
   EXPECT_EQ(simulation->synthetic.release_angle, 0.4);
@@ -56,20 +56,20 @@ TEST(MakeSimulation, DividesTorquesAndInertiaByTheRigsGravityTorque) {
 TEST(MakeSimulation, UsesUnitsOfGravityTorqueWithoutARig) {
   const Result<Simulation> simulation =
       MakeSimulation(Flags("inertia=0.04,coulomb=0.002," + std::string(kRelease)), {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_THAT(simulation->synthetic.parameters, ElementsAre(0.04, 0, 0.002));
 }
 
 TEST(MakeSimulation, UsesTheRigsGeometricInertiaByDefault) {
   const Result<Simulation> simulation = MakeSimulation(Flags(std::string(kRelease)), RoundRig());
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_THAT(simulation->synthetic.parameters, ElementsAre(DoubleEq(0.04), 0, 0));
   EXPECT_THAT(simulation->truth.front(), Pair("inertia", 0.08));
 }
 
 TEST(MakeSimulation, StartsInMotionForAnAngleAndARate) {
   const Result<Simulation> simulation = MakeSimulation(Flags("inertia=0.04,initial_angle=0.1,initial_rate=-2"), {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_EQ(simulation->synthetic.start, StartKind::kMoving);
   EXPECT_EQ(simulation->synthetic.initial_angle, 0.1);
   EXPECT_EQ(simulation->synthetic.initial_rate, -2);
@@ -84,7 +84,7 @@ TEST(MakeSimulation, ReadsSensorFlagsInTheColumnsUnit) {
   flags.resolution = 0.5;
   flags.range = "-90,45";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_EQ(simulation->unit.column, "angle_deg");
   EXPECT_EQ(simulation->synthetic.quantity, Quantity::kAngle);
   EXPECT_EQ(simulation->synthetic.zero, 0.1);
@@ -100,7 +100,7 @@ TEST(MakeSimulation, PassesTheNoiseLawUnchanged) {
   flags.noise_correlation = -0.5;
   flags.noise_freedom = 3;
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_EQ(simulation->synthetic.noise_correlation, -0.5);
   EXPECT_EQ(simulation->synthetic.noise_freedom, 3);
 }
@@ -110,7 +110,7 @@ TEST(MakeSimulation, GivesAGyroARateBiasInsteadOfAZeroAngle) {
   flags.unit = "rad_s";
   flags.noise = 2;
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_EQ(simulation->unit.column, "gyro_rad_s");
   EXPECT_EQ(simulation->synthetic.quantity, Quantity::kRate);
   EXPECT_EQ(simulation->synthetic.zero, 0.02);
@@ -118,14 +118,14 @@ TEST(MakeSimulation, GivesAGyroARateBiasInsteadOfAZeroAngle) {
   flags.set = "inertia=0.04,zero_angle=0.02," + std::string(kRelease);
   const Result<Simulation> wrong = MakeSimulation(flags, {});
   ASSERT_FALSE(wrong);
-  EXPECT_THAT(wrong.error().message, HasSubstr("no parameter 'zero_angle'"));
+  EXPECT_THAT(wrong.error().message(), HasSubstr("no parameter 'zero_angle'"));
 }
 
 TEST(MakeSimulation, AllowsAnyGravityWithAnyFriction) {
   SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   flags.gravity = "linear";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_EQ(simulation->synthetic.model.friction, "coulomb");
   EXPECT_EQ(simulation->synthetic.model.gravity, Gravity::kLinear);
   EXPECT_EQ(simulation->synthetic.model.name, "linear_coulomb");
@@ -135,7 +135,7 @@ TEST(MakeSimulation, TreatsLinearViscousAsTheLinearModel) {
   SimulationFlags flags = Flags("inertia=0.04," + std::string(kRelease));
   flags.model = "linear";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   EXPECT_EQ(simulation->synthetic.model.friction, "viscous");
   EXPECT_EQ(simulation->synthetic.model.gravity, Gravity::kLinear);
 }
@@ -146,7 +146,7 @@ TEST(MakeSimulation, ListsTheParametersOfTheModelForAnUnknownName) {
   const Result<Simulation> simulation = MakeSimulation(flags, {});
   ASSERT_FALSE(simulation);
   EXPECT_EQ(simulation.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(simulation.error().message,
+  EXPECT_EQ(simulation.error().message(),
             "--set: model viscous has no parameter 'coulomb'; its parameters are inertia, viscous, release_angle, "
             "release_time, "
             "initial_angle, initial_rate, zero_angle");
@@ -157,9 +157,9 @@ TEST(SimulationOfRecording, ScattersTheTruthAboutTheSetValues) {
   flags.spread = "release_angle=0.01,inertia=0.001";
   flags.seed = 5;
   const Result<Simulation> simulation = MakeSimulation(flags, RoundRig());
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   const Result<Simulation> second = SimulationOfRecording(*simulation, 1);
-  ASSERT_TRUE(second) << second.error().message;
+  ASSERT_TRUE(second) << second.error().message();
   EXPECT_EQ(second->synthetic.seed, 6);
   const auto truth = [&](std::size_t i) { return second->truth[i].second; };
   EXPECT_THAT(second->truth,
@@ -184,7 +184,7 @@ TEST(SimulationOfRecording, GivesOneTruthPerSeed) {
 
 TEST(SimulationOfRecording, KeepsTheSetValuesWithoutASpread) {
   const Result<Simulation> simulation = MakeSimulation(Flags("inertia=0.06," + std::string(kRelease)), {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   const Result<Simulation> third = SimulationOfRecording(*simulation, 2);
   ASSERT_TRUE(third);
   EXPECT_EQ(third->truth, simulation->truth);
@@ -196,7 +196,7 @@ TEST(SimulationOfRecording, RespectsTheOrderOfAModelsParameters) {
   flags.model = "stribeck";
   flags.spread = "coulomb=0.001,stiction=0.001";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   for (int index = 0; index < 100; ++index) {
     const std::vector<double> parameters = SimulationOfRecording(*simulation, index)->synthetic.parameters;
     EXPECT_GE(parameters[3], parameters[2]) << index;
@@ -208,7 +208,7 @@ TEST(MakeSimulation, LosesCountsAtTheGivenTimes) {
   flags.resolution = 0.5;
   flags.lose = "5.25:-3,8:1";
   const Result<Simulation> simulation = MakeSimulation(flags, {});
-  ASSERT_TRUE(simulation) << simulation.error().message;
+  ASSERT_TRUE(simulation) << simulation.error().message();
   ASSERT_EQ(simulation->synthetic.lost_counts.size(), 2U);
   EXPECT_EQ(simulation->synthetic.lost_counts[0].time, 5.25);
   EXPECT_EQ(simulation->synthetic.lost_counts[0].counts, -3);
@@ -285,7 +285,7 @@ TEST(MakeSimulation, RefusesWrongFlagsAndNamesThem) {
     const Result<Simulation> simulation = MakeSimulation(flags, {});
     ASSERT_FALSE(simulation) << refusal.message;
     EXPECT_EQ(simulation.error().code, StatusCode::kInvalidArgument) << refusal.message;
-    EXPECT_THAT(simulation.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(simulation.error().message(), HasSubstr(refusal.message));
   }
 }
 

@@ -25,13 +25,13 @@ constexpr double kRadPerDeg = 0.017453292519943295;  // π / 180
 Simulation Options(SimulationFlags flags = {}) {
   flags.set = "inertia=0.04,coulomb=0.001,release_angle=0.3,release_time=0.5";
   const Result<Simulation> options = MakeSimulation(flags, {});
-  EXPECT_TRUE(options) << options.error().message;
+  EXPECT_TRUE(options) << options.error().message();
   return *options;
 }
 
 Recording Simulated(const Simulation& options) {
   const Result<Recording> recording = SimulateRecording(options.synthetic);
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   return *recording;
 }
 
@@ -55,7 +55,7 @@ TEST(RecordingCsv, ReadsBackIdentically) {
     const Simulation options = Options(flags);
     const Recording recording = Simulated(options);
     const Result<Recording> read = ParseRecording(RecordingCsv(options, recording, 1), "run.csv");
-    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->quantity, recording.quantity);
     EXPECT_EQ(read->time, recording.time);
     EXPECT_TRUE(read->value.isApprox(recording.value, 1e-15)) << unit;
@@ -73,7 +73,7 @@ TEST(RecordingCsv, ContainsItsOriginAndTheSensorsUnit) {
   EXPECT_THAT(csv, HasSubstr(", model coulomb, gravity sin, seed 7\n# resolution: 0.1985\n"
                              "# range: -49.6077,153.4578\n# sensor: {\"kind\":\"ideal\"}\ntime_s,angle_deg\n0,"));
   const Result<Recording> read = ParseRecording(csv, "run.csv");
-  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_TRUE(read) << read.error().message();
   EXPECT_THAT(read->resolution, DoubleEq(0.1985 * kRadPerDeg));
 }
 

@@ -82,9 +82,9 @@ class ServiceTest : public testing::Test {
 
   void Begin() {
     auto store = FitStore::Open(folder_ / "fits.sqlite");
-    ASSERT_TRUE(store) << store.error().message;
+    ASSERT_TRUE(store) << store.error().message();
     auto service = FittingService::Begin(options_, *std::move(store));
-    ASSERT_TRUE(service) << service.error().message;
+    ASSERT_TRUE(service) << service.error().message();
     service_ = *std::move(service);
   }
 

@@ -362,13 +362,13 @@ TEST(ParseRefitRequest, IgnoresNothingSilently) {
 TEST(JsonOf, IsReadBackAsTheSameFlags) {
   const FlagTexts flags = {{"model", "drag"}, {"init", "a=\"1\",\\ü"}, {"from", "0.1"}};
   const auto back = FlagTextsOf(JsonOf(flags));
-  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_TRUE(back) << back.error().message();
   EXPECT_EQ(*back, flags);
 }
 
 TEST(FlagTextsOf, WritesNumbersAndSwitchesAsText) {
   const auto flags = FlagTextsOf({{"from", 0.1}, {"seed", 18446744073709551615U}, {"closed_form_only", false}});
-  ASSERT_TRUE(flags) << flags.error().message;
+  ASSERT_TRUE(flags) << flags.error().message();
   EXPECT_EQ(flags->at("from"), "0.1");
   EXPECT_EQ(flags->at("seed"), "18446744073709551615");
   EXPECT_EQ(flags->at("closed_form_only"), "false");

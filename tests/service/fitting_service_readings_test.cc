@@ -252,7 +252,7 @@ TEST_F(FittingServiceReadingsTest, AreAnsweredWhileAllFitThreadsAreBusy) {
   options.port = 0;
   options.fit_threads = 2;
   auto server = Server::Listen(options, held, nullptr);
-  ASSERT_TRUE(server) << server.error().message;
+  ASSERT_TRUE(server) << server.error().message();
   std::thread thread([&] { (*server)->Run(); });
   std::vector<RawClient> fits;
   for (int i = 0; i < 2 * options.fit_threads; ++i) {  // half of them wait

@@ -20,7 +20,7 @@ constexpr const char* kType = "multipart/form-data; boundary=X";
 /// Parts in the form "name|filename|content type|content".
 std::vector<std::string> PartsOf(const std::string& content_type, const std::string& body) {
   const auto parts = ParseFormData(content_type, body);
-  if (!parts) return {"refused: " + parts.error().message};
+  if (!parts) return {"refused: " + parts.error().message()};
   std::vector<std::string> shown;
   for (const FormPart& part : *parts) {
     shown.push_back(part.name + "|" + part.filename + "|" + part.content_type + "|" + std::string(part.content));
@@ -46,8 +46,8 @@ std::string FaultOf(const std::string& content_type, const std::string& body) {
   const auto parts = ParseFormData(content_type, body);
   if (parts) return "not refused";
   EXPECT_EQ(parts.error().code, StatusCode::kInvalidArgument);
-  EXPECT_LT(parts.error().message.size(), 400);
-  return parts.error().message;
+  EXPECT_LT(parts.error().message().size(), 400);
+  return parts.error().message();
 }
 
 std::string FaultOf(const std::string& body) { return FaultOf(kType, body); }
@@ -349,7 +349,7 @@ TEST(ParseFormData, ReadsLongBodiesWithTextLikeABoundary) {
     while (content.size() < kBytes)
       content += piece + (piece.ends_with("\t \t") ? std::string(100'000, ' ') + "-" : "");
     const auto parts = ParseFormData(kType, head + content + "!\r\n--X--");
-    ASSERT_TRUE(parts) << piece << parts.error().message;
+    ASSERT_TRUE(parts) << piece << parts.error().message();
     EXPECT_EQ(parts->front().content.size(), content.size() + 1) << piece;
     EXPECT_NE(FaultOf(head + content), "not refused") << piece;
     EXPECT_NE(FaultOf("--X" + content), "not refused") << piece;

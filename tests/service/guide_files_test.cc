@@ -34,7 +34,7 @@ class ReadGuideFileTest : public testing::Test {
     const auto file = ReadGuideFile(Guide(), path);
     if (file) return std::string(file->type) + ": " + file->bytes;
     EXPECT_EQ(file.error().code, StatusCode::kNotFound);
-    return file.error().message;
+    return file.error().message();
   }
 
   const small_batch::Folder folder_{"guide_files"};
@@ -75,8 +75,8 @@ TEST_F(ReadGuideFileTest, ExplainsHowToInstallAMissingGuide) {
     const auto file = ReadGuideFile(folder, "index.html");
     ASSERT_FALSE(file);
     EXPECT_EQ(file.error().code, StatusCode::kNotFound);
-    EXPECT_THAT(file.error().message, StartsWith("the user guide is not installed"));
-    EXPECT_THAT(file.error().message, HasSubstr("--docs"));
+    EXPECT_THAT(file.error().message(), StartsWith("the user guide is not installed"));
+    EXPECT_THAT(file.error().message(), HasSubstr("--docs"));
   }
 }
 

@@ -16,7 +16,7 @@ HttpRequest Post(std::vector<HttpField> fields) { return {"POST", "/v1/fits", st
 
 std::string KeyOf(const std::string& value) {
   const auto key = IdempotencyKey(Post({{"Host", "localhost"}, {"Idempotency-Key", value}}));
-  return key ? *key : "refused: " + key.error().message;
+  return key ? *key : "refused: " + key.error().message();
 }
 
 TEST(IdempotencyKey, IsTheHeaderValueWithoutSurroundingBlanks) {
@@ -53,7 +53,7 @@ TEST(IdempotencyKey, IsRefusedIfInvalid) {
   const auto twice = IdempotencyKey(Post({{"Idempotency-Key", "a"}, {"idempotency-key", "a"}}));
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(twice.error().message, "the Idempotency-Key is given more than once; keep one of them");
+  EXPECT_EQ(twice.error().message(), "the Idempotency-Key is given more than once; keep one of them");
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ TEST_F(LiveRecordingTest, WaitsIfThereIsNoFile) {
   const auto bytes = live_.Bytes();
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(bytes.error().message, "run.csv: there is no recording yet; start record_pendulum --out run.csv");
+  EXPECT_EQ(bytes.error().message(), "run.csv: there is no recording yet; start record_pendulum --out run.csv");
 }
 
 TEST_F(LiveRecordingTest, FollowsARunFromStartToEnd) {
@@ -369,7 +369,7 @@ TEST_F(LiveRecordingTest, LimitsTheSizeOfTheFile) {
   const auto bytes = live_.Bytes();
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().code, StatusCode::kDataLoss);
-  EXPECT_EQ(bytes.error().message, "run.csv: it is larger than 64 MiB; fit this file with fit_pendulum");
+  EXPECT_EQ(bytes.error().message(), "run.csv: it is larger than 64 MiB; fit this file with fit_pendulum");
 }
 
 TEST_F(LiveRecordingTest, IsThreadSafe) {

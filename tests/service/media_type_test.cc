@@ -18,7 +18,7 @@ using testing::Pair;
 
 MediaType TypeOf(const std::string& text) {
   const auto type = ParseMediaType(text);
-  EXPECT_TRUE(type) << text << ": " << type.error().message;
+  EXPECT_TRUE(type) << text << ": " << type.error().message();
   return type ? *type : MediaType();
 }
 
@@ -27,12 +27,12 @@ std::string FaultOf(const std::string& text) {
   const auto type = ParseMediaType(text);
   if (type) return "not refused";
   EXPECT_EQ(type.error().code, StatusCode::kInvalidArgument);
-  return type.error().message;
+  return type.error().message();
 }
 
 FieldParameters ParametersOf(const std::string& text, Backslash backslash) {
   const auto parameters = ParseFieldParameters(text, "a test", backslash);
-  EXPECT_TRUE(parameters) << text << ": " << parameters.error().message;
+  EXPECT_TRUE(parameters) << text << ": " << parameters.error().message();
   return parameters ? *parameters : FieldParameters();
 }
 
@@ -112,7 +112,7 @@ TEST(ParseFieldParameters, KeepsNonAsciiBytesInQuotes) {
 TEST(ParseFieldParameters, NamesTheirField) {
   const auto wrong = ParseFieldParameters("x", "part 3", Backslash::kEscapesQuotes);
   ASSERT_FALSE(wrong);
-  EXPECT_EQ(wrong.error().message, "the parameters of part 3 have \"x\", where a semicolon must be");
+  EXPECT_EQ(wrong.error().message(), "the parameters of part 3 have \"x\", where a semicolon must be");
 }
 
 TEST(ParseFieldParameters, ReadsManyParameters) {

@@ -53,7 +53,7 @@ TEST(ProblemResponse, IsAnObjectOfProblemDetails) {
 
 TEST(ProblemResponse, HasTheFlagsToTryAsParameters) {
   const Status status{
-      StatusCode::kInvalidArgument, "no unit", {"--unit deg", "--value_column gyro z (rad/s)", "--fast"}};
+      StatusCode::kInvalidArgument, "no unit", "", {"--unit deg", "--value_column gyro z (rad/s)", "--fast"}};
   const Json json = Json::parse(ProblemResponse(ProblemOf(status)).body);
   const Json parameters = {{"unit", "deg"}, {"value_column", "gyro z (rad/s)"}, {"fast", "true"}};
   EXPECT_EQ(json["try"], parameters);

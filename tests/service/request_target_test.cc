@@ -20,12 +20,12 @@ using Query = std::vector<std::pair<std::string, std::string>>;
 
 std::string PathOf(const std::string& target) {
   const auto parsed = ParseTarget(target);
-  return parsed ? parsed->path : "refused: " + parsed.error().message;
+  return parsed ? parsed->path : "refused: " + parsed.error().message();
 }
 
 Query QueryOf(const std::string& query) {
   const auto parsed = ParseTarget("/a?" + query);
-  EXPECT_TRUE(parsed) << query << ": " << parsed.error().message;
+  EXPECT_TRUE(parsed) << query << ": " << parsed.error().message();
   return parsed ? parsed->query : Query();
 }
 
@@ -34,7 +34,7 @@ std::string FaultOf(const std::string& target) {
   const auto parsed = ParseTarget(target);
   if (parsed) return "not refused";
   EXPECT_EQ(parsed.error().code, StatusCode::kInvalidArgument);
-  return parsed.error().message;
+  return parsed.error().message();
 }
 
 // ---- The path ------------------------------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ class Served : public testing::Test {
       const std::lock_guard lock(mutex_);
       answered_.push_back(answered);
     });
-    ASSERT_TRUE(server) << server.error().message;
+    ASSERT_TRUE(server) << server.error().message();
     server_ = std::move(*server);
     thread_ = std::thread([&] { server_->Run(); });
   }

@@ -303,7 +303,7 @@ TEST(Listen, RefusesAnInvalidAddress) {
   const auto server = Server::Listen(options, handler, nullptr);
   ASSERT_FALSE(server);
   EXPECT_EQ(server.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(server.error().message, HasSubstr("address \"localhost.example\""));
+  EXPECT_THAT(server.error().message(), HasSubstr("address \"localhost.example\""));
 }
 
 TEST(Listen, ReportsAPortInUse) {
@@ -316,7 +316,7 @@ TEST(Listen, ReportsAPortInUse) {
   const auto second = Server::Listen(options, handler, nullptr);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(second.error().message, HasSubstr("127.0.0.1:" + std::to_string(options.port)));
+  EXPECT_THAT(second.error().message(), HasSubstr("127.0.0.1:" + std::to_string(options.port)));
 }
 
 TEST(Listen, AcceptsAnIpv6Address) {

@@ -32,7 +32,7 @@ TEST(MakeCalibrateSensorOptions, CalibratesATable) {
   flags.json = "cal.json";
   flags.plot = "cal.svg";
   const auto options = MakeCalibrateSensorOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->data, "table.csv");
   EXPECT_EQ(options->order, 3);
   ASSERT_TRUE(options->input_range);
@@ -51,7 +51,7 @@ TEST(MakeCalibrateSensorOptions, OmitsOutputsThatAreNotRequested) {
   CalibrateSensorFlags flags = TableFlags();
   flags.data = "-";
   const auto options = MakeCalibrateSensorOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->order, 1);
   EXPECT_FALSE(options->input_range);
   EXPECT_THAT(options->Outputs(), IsEmpty());
@@ -76,7 +76,7 @@ TEST(MakeCalibrateSensorOptions, PlansASensorForEachReference) {
   flags.potentiometer_range_deg = 300;
   flags.divider = 0.5;
   const auto options = MakeCalibrateSensorOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   ASSERT_EQ(options->plan.size(), 3);
   EXPECT_EQ(options->plan[1].reference_voltage, 3.3);
   for (const AdcSensor& sensor : options->plan) {
@@ -89,7 +89,7 @@ TEST(MakeCalibrateSensorOptions, PlansASensorForEachReference) {
 
 TEST(MakeCalibrateSensorOptions, PlansTheUsualBoardByDefault) {
   const auto options = MakeCalibrateSensorOptions(PlanFlags());
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   ASSERT_EQ(options->plan.size(), 1);
   EXPECT_EQ(options->plan[0].bits, 10);
   EXPECT_EQ(options->plan[0].reference_voltage, 5);
@@ -107,7 +107,7 @@ void ExpectRefusals(const CalibrateSensorFlags& good, const std::vector<Refusal>
     const auto options = MakeCalibrateSensorOptions(flags);
     ASSERT_FALSE(options) << refusal.message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(options.error().message(), HasSubstr(refusal.message));
   }
 }
 
@@ -138,7 +138,7 @@ TEST(MakeCalibrateSensorOptions, TakesATableWithoutAFlag) {
   Flags flags;
   flags.positional = {"table.csv"};
   const auto options = MakeCalibrateSensorOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->data, "table.csv");
   ExpectRefusals(flags, {{"'b.csv' does not belong to a flag", [](Flags& f) { f.positional.emplace_back("b.csv"); }},
                          {"'table.csv' does not belong to a flag", [](Flags& f) { f.plan = true; }}});

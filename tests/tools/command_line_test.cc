@@ -24,7 +24,7 @@ std::string Refusal(const std::vector<std::string>& arguments) {
   const auto positional = PositionalArguments(arguments, kFlags);
   if (positional) return "";
   EXPECT_EQ(positional.error().code, StatusCode::kInvalidArgument);
-  return positional.error().message;
+  return positional.error().message();
 }
 
 std::vector<std::string> Positional(const std::vector<std::string>& arguments) {

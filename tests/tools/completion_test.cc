@@ -33,7 +33,7 @@ TEST(CompletionScript, HasTheFlagsOfTheTool) {
 }
 
 TEST(CompletionScript, RefusesOtherShells) {
-  EXPECT_EQ(CompletionScript("tcsh", "fit", kFlags).error().message,
+  EXPECT_EQ(CompletionScript("tcsh", "fit", kFlags).error().message(),
             "--completion is 'tcsh'; it must be bash, zsh or fish");
 }
 

@@ -26,7 +26,7 @@ TEST(MakeCoverageStudyOptions, KeepsTheOrderOfScenarios) {
   flags.threads = 3;
   flags.markdown = "coverage.md";
   const auto options = MakeCoverageStudyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   ASSERT_EQ(options->scenarios.size(), 2);
   EXPECT_EQ(options->scenarios[0].name, "moving");
   EXPECT_EQ(options->scenarios[1].name, "white_0.5");
@@ -41,7 +41,7 @@ TEST(MakeCoverageStudyOptions, KeepsTheOrderOfScenarios) {
 
 TEST(MakeCoverageStudyOptions, GivesACommandThatReproducesTheTables) {
   const auto options = MakeCoverageStudyOptions(Flags("all"));
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->command, "coverage_study --scenario all --count 1000 --seed 1");
   EXPECT_EQ(options->scenarios.size(), CoverageScenarios().size());
   EXPECT_THAT(options->Outputs(), IsEmpty());
@@ -52,7 +52,7 @@ TEST(MakeCoverageStudyOptions, ListsAllScenariosByDefault) {
   flags.list = true;
   flags.markdown = "coverage.md";
   const auto options = MakeCoverageStudyOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_TRUE(options->list);
   EXPECT_EQ(options->scenarios.size(), CoverageScenarios().size());
   EXPECT_THAT(options->Outputs(), IsEmpty());
@@ -79,7 +79,7 @@ TEST(MakeCoverageStudyOptions, RefusesWrongFlagsAndNamesThem) {
     const auto options = MakeCoverageStudyOptions(flags);
     ASSERT_FALSE(options) << refusal.message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(options.error().message(), HasSubstr(refusal.message));
   }
 }
 

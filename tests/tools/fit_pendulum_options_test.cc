@@ -32,7 +32,7 @@ std::string Refusal(const FitPendulumFlags& flags) {
   const auto options = MakeFitPendulumOptions(flags);
   if (options) return "";
   EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
-  return options.error().message;
+  return options.error().message();
 }
 
 std::string RefusalOfFix(const std::string& fix) {
@@ -89,7 +89,7 @@ TEST(MakeFitPendulumOptions, MakesNoFitForClosedFormsOnly) {
   flags.json = "forms.json";
   flags.series = "-";
   const auto options = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_TRUE(options->closed_form_only);
   EXPECT_EQ(options->fit.model, "drag");
   EXPECT_THAT(options->Outputs(),
@@ -126,7 +126,7 @@ TEST(MakeFitPendulumOptions, TakesRecordingsWithoutAFlag) {
   FitPendulumFlags flags;
   flags.positional = {"run.csv", "a,b.csv"};
   const auto options = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_THAT(options->data, ElementsAre("run.csv", "a,b.csv"));
   EXPECT_TRUE(options->IsJoint(2));
   flags.data = "c.csv";
@@ -211,7 +211,7 @@ TEST(MakeFitPendulumOptions, PassesTheDescriptionOfTheFile) {
   flags.unit = "counts";
   flags.sample_rate_hz = "1e2";
   const auto options = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->calibration, "cal.json");
   EXPECT_EQ(options->read.time_column, "none");
   EXPECT_EQ(options->read.value_column, "2");
@@ -255,7 +255,7 @@ TEST(MakeFitPendulumOptions, AcceptsSeveralRecordingsOrAList) {
   flags.data = "a.csv,b.csv";
   flags.json = "fit.json";
   const auto several = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(several) << several.error().message;
+  ASSERT_TRUE(several) << several.error().message();
   EXPECT_THAT(several->data, ElementsAre("a.csv", "b.csv"));
   EXPECT_THAT(several->Inputs(),
               ElementsAre(testing::FieldsAre("--data", "a.csv"), testing::FieldsAre("--data", "b.csv")));
@@ -264,7 +264,7 @@ TEST(MakeFitPendulumOptions, AcceptsSeveralRecordingsOrAList) {
   EXPECT_EQ(Refusal(flags), "--data and --data_list both name recordings; give one of them");
   flags.data.clear();
   const auto listed = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(listed) << listed.error().message;
+  ASSERT_TRUE(listed) << listed.error().message();
   EXPECT_EQ(listed->data_list, "list.txt");
   EXPECT_THAT(listed->Inputs(), ElementsAre(testing::FieldsAre("--data_list", "list.txt")));
 }
@@ -306,7 +306,7 @@ TEST(MakeFitPendulumOptions, AcceptsPriorKnowledgeOfParameters) {
   flags.bounds = "viscous=:0.1";
   flags.prior = "coulomb=0.004:0.001";
   const auto options = MakeFitPendulumOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_THAT(options->fit.initial, ElementsAre(Pair("inertia", 0.08), Pair("zero_drift", 0)));
   EXPECT_EQ(options->fit.bounds.at("viscous").upper, 0.1);
   EXPECT_EQ(options->fit.priors.at("coulomb").mean, 0.004);

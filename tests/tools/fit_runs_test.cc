@@ -35,7 +35,7 @@ Result<Identification> OnlyRun(FitPendulumOptions options) {
 
 TEST(FitAll, AddsClosedFormsAndTheirCheckToAFit) {
   const auto run = OnlyRun(TextbookOptions());
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   const Identification& report = *run;
   ASSERT_EQ(report.fits.size(), 1);
   ASSERT_TRUE(report.recordings.front().closed_forms);
@@ -51,7 +51,7 @@ TEST(FitAll, SkipsFitsForClosedFormsOnly) {
   FitPendulumOptions options = TextbookOptions();
   options.closed_form_only = true;
   const auto run = OnlyRun(options);
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   const Identification& report = *run;
   EXPECT_TRUE(report.fits.empty());
   EXPECT_TRUE(report.recordings.front().checks.empty());
@@ -80,7 +80,7 @@ TEST(FitAll, ExplainsMissingClosedForms) {
   const auto run = OnlyRun(options);
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(run.error().message, HasSubstr("turn"));
+  EXPECT_THAT(run.error().message(), HasSubstr("turn"));
 }
 
 TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
@@ -89,7 +89,7 @@ TEST(CheckNumberedOutputs, RefusesStandardOutputForSeveralRuns) {
   EXPECT_TRUE(CheckNumberedOutputs(options, {}, 1));
   const auto checked = CheckNumberedOutputs(options, {}, 2);
   ASSERT_FALSE(checked);
-  EXPECT_EQ(checked.error().message,
+  EXPECT_EQ(checked.error().message(),
             "--series - takes one fit, but there are 2; give a file name, to which the number is added");
 }
 
@@ -106,7 +106,7 @@ FitPendulumOptions TwoRunsOptions() {
 
 TEST(FitAll, CombinesSeveralRecordingsInOneRun) {
   const auto run = OnlyRun(TwoRunsOptions());
-  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_TRUE(run) << run.error().message();
   const Identification& report = *run;
   ASSERT_TRUE(report.is_joint());
   ASSERT_EQ(report.recordings.size(), 2);
@@ -139,7 +139,7 @@ TEST(FitAll, EstimatesSharedParametersBetterJointly) {
     FitPendulumOptions options = TwoRunsOptions();
     options.data = {path};
     const auto alone = OnlyRun(options);
-    ASSERT_TRUE(alone) << alone.error().message;
+    ASSERT_TRUE(alone) << alone.error().message();
     EXPECT_FALSE(alone->is_joint());
     for (const char* name : {"inertia", "viscous", "coulomb"}) {
       EXPECT_LT(together->fits[0].Find(name)->std_error.value(), alone->fits[0].Find(name)->std_error.value())
@@ -180,7 +180,7 @@ TEST(FitAll, MakesNoJointFitIfOneRecordingFails) {
   const auto run = OnlyRun(options);
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(run.error().message, "datasets/nowhere.csv: there is no such file; check the path");
+  EXPECT_EQ(run.error().message(), "datasets/nowhere.csv: there is no such file; check the path");
 }
 
 TEST(FitAll, RefusesToShareParametersOfOneSwing) {
@@ -191,7 +191,7 @@ TEST(FitAll, RefusesToShareParametersOfOneSwing) {
   ASSERT_FALSE(run);
   EXPECT_EQ(run.error().code, StatusCode::kInvalidArgument);
   EXPECT_EQ(
-      run.error().message,
+      run.error().message(),
       "--shared is for several recordings, or several releases of one (--release all), but there is only one swing");
 }
 
@@ -206,7 +206,7 @@ TEST(CheckNumberedOutputs, AllowsAJointResultOnStandardOutput) {
   const auto checked = CheckNumberedOutputs(options, *setup, 2);
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(checked.error().message,
+  EXPECT_EQ(checked.error().message(),
             "--residuals - takes one recording, but there are 2; give a file name, to which the number is added");
 }
 

@@ -48,7 +48,7 @@ TEST_F(FlagsTest, RefusesBadFlagsWithoutSettingAnything) {
   const auto parsed = Parse({"--width=2", "--shap=flat"});
   ASSERT_FALSE(parsed);
   EXPECT_EQ(parsed.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(parsed.error().message, "--shap is not a flag of this tool; did you mean --shape?");
+  EXPECT_EQ(parsed.error().message(), "--shap is not a flag of this tool; did you mean --shape?");
   EXPECT_EQ(FLAGS_width, 1);
 }
 

@@ -28,7 +28,7 @@ class WithPath {
 TEST(RunGnuplot, ReturnsTheDrawing) {
   ASSERT_TRUE(CheckGnuplot());
   const auto svg = RunGnuplot("set terminal svg\nplot '-' with lines notitle\n0 1\n1 3\ne\n");
-  ASSERT_TRUE(svg) << svg.error().message;
+  ASSERT_TRUE(svg) << svg.error().message();
   EXPECT_THAT(*svg, StartsWith("<?xml"));
   EXPECT_THAT(*svg, HasSubstr("</svg>"));
 }
@@ -37,7 +37,7 @@ TEST(RunGnuplot, HandlesAScriptLargerThanAPipe) {
   std::string script = "set terminal svg\n$data << EndOfData\n";
   for (int i = 0; i < 20'000; ++i) script += std::to_string(i) + " " + std::to_string(i * 7919 % 1000) + "\n";
   const auto svg = RunGnuplot(script + "EndOfData\nplot $data with points\n");
-  ASSERT_TRUE(svg) << svg.error().message;
+  ASSERT_TRUE(svg) << svg.error().message();
   EXPECT_GT(svg->size(), 200'000);
 }
 
@@ -45,7 +45,7 @@ TEST(RunGnuplot, ReturnsTheMessageOfAFailedScript) {
   const auto svg = RunGnuplot("plot nonsense\n");
   ASSERT_FALSE(svg);
   EXPECT_EQ(svg.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(svg.error().message, StartsWith("plot: gnuplot failed: \""));
+  EXPECT_THAT(svg.error().message(), StartsWith("plot: gnuplot failed: \""));
 }
 
 TEST(CheckGnuplot, NamesTheMissingPackage) {
@@ -53,7 +53,7 @@ TEST(CheckGnuplot, NamesTheMissingPackage) {
   const auto checked = CheckGnuplot();
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, StatusCode::kCannotWrite);
-  EXPECT_EQ(checked.error().message, "plot needs gnuplot; install gnuplot-nox");
+  EXPECT_EQ(checked.error().message(), "plot needs gnuplot; install gnuplot-nox");
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ std::string Check(const std::vector<std::string>& outputs, const std::vector<std
   for (std::size_t i = 0; i < in.size(); ++i) in[i] = {"--in", inputs[i]};
   const auto checked = CheckOutputs(out, in);
   if (checked) return "";
-  EXPECT_EQ(checked.error().code, code) << checked.error().message;
-  return checked.error().message;
+  EXPECT_EQ(checked.error().code, code) << checked.error().message();
+  return checked.error().message();
 }
 
 std::string Unwritable(const std::string& path) { return Check({path}, {}, StatusCode::kCannotWrite); }
@@ -71,7 +71,7 @@ std::string Write(const std::vector<Output>& outputs) {
   const auto written = WriteOutputs(outputs);
   if (written) return "";
   EXPECT_EQ(written.error().code, StatusCode::kCannotWrite);
-  return written.error().message;
+  return written.error().message();
 }
 
 TEST_F(OutputTest, CheckCreatesNothing) {
@@ -226,10 +226,10 @@ TEST_F(OutputTest, KeepsTheOldFileIfAPieceFails) {
     return Letter(i);
   });
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().message, "no third piece");
+  EXPECT_EQ(written.error().message(), "no third piece");
   EXPECT_EQ(Text("old"), "kept");
   EXPECT_THAT(Names(), UnorderedElementsAre("old"));
-  EXPECT_EQ(WritePieces(Path("no/x"), 1, Letter).error().message,
+  EXPECT_EQ(WritePieces(Path("no/x"), 1, Letter).error().message(),
             "cannot write " + Path("no/x") + ": No such file or directory");
 }
 

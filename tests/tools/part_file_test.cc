@@ -96,7 +96,7 @@ TEST(PartFile, ReportsAFailureToOpen) {
   const auto opened = part.Open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(opened.error().message, AllOf(HasSubstr("nowhere/run.csv.part"), HasSubstr("No such file")));
+  EXPECT_THAT(opened.error().message(), AllOf(HasSubstr("nowhere/run.csv.part"), HasSubstr("No such file")));
 }
 
 TEST(PartFile, ReportsAFullDisk) {
@@ -107,7 +107,7 @@ TEST(PartFile, ReportsAFullDisk) {
   const auto appended = part.Append("0,500\n");
   ASSERT_FALSE(appended);
   EXPECT_EQ(appended.error().code, StatusCode::kCannotWrite);
-  EXPECT_THAT(appended.error().message, AllOf(HasSubstr("run.csv.part"), HasSubstr("No space left")));
+  EXPECT_THAT(appended.error().message(), AllOf(HasSubstr("run.csv.part"), HasSubstr("No space left")));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Flags Recording() {
 /// The options for valid flags.
 RecordPendulumOptions Made(const Flags& flags) {
   const auto options = MakeRecordPendulumOptions(flags);
-  EXPECT_TRUE(options) << options.error().message;
+  EXPECT_TRUE(options) << options.error().message();
   return options.value_or(RecordPendulumOptions());
 }
 
@@ -119,7 +119,7 @@ TEST(MakeRecordPendulumOptions, FitsAFileWithCommasInItsName) {
     flags.out = name;
     flags.fit = true;
     const auto options = MakeRecordPendulumOptions(flags);
-    ASSERT_TRUE(options) << options.error().message;
+    ASSERT_TRUE(options) << options.error().message();
     ASSERT_TRUE(options->fit);
     EXPECT_THAT(options->fit->data, ElementsAre(name));
   }
@@ -180,7 +180,7 @@ void ExpectRefusals(const Flags& good, const std::vector<Refusal>& refusals) {
     const auto options = MakeRecordPendulumOptions(flags);
     ASSERT_FALSE(options) << refusal.message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(options.error().message(), HasSubstr(refusal.message));
   }
 }
 

@@ -45,7 +45,7 @@ struct Laboratory {
   /// A recording that must succeed.
   RecordedRun Recorded() {
     auto recorded = Record();
-    EXPECT_TRUE(recorded) << recorded.error().message;
+    EXPECT_TRUE(recorded) << recorded.error().message();
     return recorded ? *std::move(recorded) : RecordedRun(options.rate);
   }
 
@@ -69,7 +69,7 @@ LoggerScript WithSawtooth() {
 /// The recording parsed from the file's text.
 Recording ReadBack(const std::string& text) {
   const auto recording = ParseRecording(text, "run.csv");
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   return recording.value_or(Recording());
 }
 
@@ -264,7 +264,7 @@ TEST(RecordRun, ReportsAnEmptyRecording) {
   const auto recorded = laboratory.Record();
   ASSERT_FALSE(recorded);
   EXPECT_EQ(recorded.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(recorded.error().message, AllOf(HasSubstr("nothing was recorded"), HasSubstr("stopped sending")));
+  EXPECT_THAT(recorded.error().message(), AllOf(HasSubstr("nothing was recorded"), HasSubstr("stopped sending")));
   EXPECT_THAT(laboratory.folder.Names(), IsEmpty());
 }
 

@@ -58,7 +58,7 @@ class RefitCommandsTest : public testing::Test {
     const auto code = RunRefitCommand(options);
     stdout_text_ = GetCapturedStdout();
     stderr_text_ = GetCapturedStderr();
-    if (!code) stderr_text_ += code.error().message;
+    if (!code) stderr_text_ += code.error().message();
     return code ? *code : ExitCode(code.error().code);
   }
 

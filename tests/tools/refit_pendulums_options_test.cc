@@ -39,7 +39,7 @@ std::string Refusal(const RefitFlags& flags) {
   const auto options = MakeRefitPendulumsOptions(flags);
   if (options) return "";
   EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument);
-  return options.error().message;
+  return options.error().message();
 }
 
 TEST(MakeRefitPendulumsOptions, RefitsWithoutACommand) {
@@ -48,7 +48,7 @@ TEST(MakeRefitPendulumsOptions, RefitsWithoutACommand) {
   flags.threads = "3";
   flags.force = true;
   const auto options = MakeRefitPendulumsOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->command, RefitCommand::kRefit);
   EXPECT_EQ(options->manifest, "runs.csv");
   EXPECT_THAT(options->stores, ElementsAre("results.sqlite"));
@@ -64,7 +64,7 @@ TEST(MakeRefitPendulumsOptions, AcceptsAShard) {
   flags.scratch = "/tmp";
   flags.checkpoint_s = 5;
   const auto options = MakeRefitPendulumsOptions(flags);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   ASSERT_TRUE(options->refit.shard);
   EXPECT_EQ(options->refit.shard->index, 3);
   EXPECT_EQ(options->refit.shard->count, 64);
@@ -138,7 +138,7 @@ TEST(MakeRefitPendulumsOptions, AcceptsTheCommands) {
   };
   for (const auto& [flags, command] : commands) {
     const auto options = MakeRefitPendulumsOptions(flags);
-    ASSERT_TRUE(options) << options.error().message;
+    ASSERT_TRUE(options) << options.error().message();
     EXPECT_EQ(options->command, command);
   }
 }

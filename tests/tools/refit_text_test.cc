@@ -71,10 +71,10 @@ Store StoreOfThree(const std::string& path) {
   RunOutcome outcome;
   outcome.exit_code = 4;
   outcome.models = {"viscous", "coulomb"};
-  outcome.reason = "run0.csv:7: a row\x1b[2J of 3 fields";
+  outcome.reason = {"run0.csv:7", "a row\x1b[2J of 3 fields"};
   EXPECT_TRUE(store->Put("run0.csv", outcome));
   outcome.exit_code = 5;
-  outcome.reason = "run1.csv: no swing";
+  outcome.reason = {"run1.csv", "no swing"};
   EXPECT_TRUE(store->Put("run1.csv", outcome));
   EXPECT_TRUE(store->Commit());
   return *std::move(store);
@@ -85,7 +85,7 @@ TEST(StatusText, CountsRunsFitsAndReasons) {
   {
     Store store = StoreOfThree(path);
     const auto text = StatusText(store);
-    ASSERT_TRUE(text) << text.error().message;
+    ASSERT_TRUE(text) << text.error().message();
     EXPECT_THAT(*text, HasSubstr("    in the store                    3\n"));
     EXPECT_THAT(*text, HasSubstr("    not refitted yet                1\n"));
     EXPECT_THAT(*text, HasSubstr("    recording missing               0\n    refused                         2\n"));

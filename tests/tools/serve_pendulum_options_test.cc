@@ -30,7 +30,7 @@ ServePendulumFlags Flags() {
 
 TEST(MakeServePendulumOptions, ServeOnlyThisMachineByDefault) {
   const auto options = MakeServePendulumOptions(Flags(), "");
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->store, "fits.sqlite");
   EXPECT_EQ(options->server.address, "127.0.0.1");
   EXPECT_EQ(options->server.port, 8080);
@@ -66,7 +66,7 @@ TEST(MakeServePendulumOptions, StoreEachFlag) {
   flags.live = "run.csv";
   flags.docs = "/tmp";
   const auto options = MakeServePendulumOptions(flags, kToken);
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_EQ(options->server.port, 0);
   EXPECT_EQ(options->server.address, "0.0.0.0");
   EXPECT_EQ(options->server.fit_threads, 3);
@@ -114,7 +114,7 @@ TEST(MakeServePendulumOptions, RefuseWrongFlagsAndNameThem) {
     const auto options = MakeServePendulumOptions(flags, "");
     ASSERT_FALSE(options) << refusal.message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument) << refusal.message;
-    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(options.error().message(), HasSubstr(refusal.message));
   }
 }
 
@@ -125,7 +125,7 @@ TEST(MakeServePendulumOptions, RequireATokenForOtherMachines) {
     const auto refused = MakeServePendulumOptions(flags, "");
     ASSERT_FALSE(refused) << address;
     EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(refused.error().message,
+    EXPECT_THAT(refused.error().message(),
                 StartsWith(std::string("--address ") + address + " is open to other machines"));
     EXPECT_TRUE(MakeServePendulumOptions(flags, kToken)) << address;
   }
@@ -168,10 +168,11 @@ TEST_F(ReadTokenTest, RequiresSixteenVisibleCharacters) {
     const auto refused = Read(text);
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(refused.error().message,
+    EXPECT_THAT(refused.error().message(),
                 StartsWith(folder_.Path("token") + ": the token must have at least 16 visible ASCII characters"));
-    EXPECT_EQ(refused.error().message.find(text), std::string::npos);  // the text may be the token with a typing error
-    EXPECT_THAT(ReadToken("", text.c_str()).error().message, StartsWith("PENDULUM_TOKEN: the token must have"));
+    EXPECT_EQ(refused.error().message().find(text),
+              std::string::npos);  // the text may be the token with a typing error
+    EXPECT_THAT(ReadToken("", text.c_str()).error().message(), StartsWith("PENDULUM_TOKEN: the token must have"));
   }
 }
 

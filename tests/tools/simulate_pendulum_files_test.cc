@@ -33,13 +33,13 @@ class WriteRecordingsTest : public testing::Test {
 
   Result<void> Write() const {
     const auto options = MakeSimulateOptions(flags_, {});
-    EXPECT_TRUE(options) << options.error().message;
+    EXPECT_TRUE(options) << options.error().message();
     return WriteRecordings(*options);
   }
 
   void Make() const {
     const auto written = Write();
-    ASSERT_TRUE(written) << written.error().message;
+    ASSERT_TRUE(written) << written.error().message();
   }
 
   std::string Refused(StatusCode code) const {
@@ -47,7 +47,7 @@ class WriteRecordingsTest : public testing::Test {
     EXPECT_FALSE(written);
     if (written) return "";
     EXPECT_EQ(written.error().code, code);
-    return written.error().message;
+    return written.error().message();
   }
 
   TemporaryFolder folder_;
@@ -61,7 +61,7 @@ TEST_F(WriteRecordingsTest, WritesRecordingsTruthAndManifest) {
   EXPECT_THAT(folder_.Names(), UnorderedElementsAre("run_001.csv", "run_002.csv", "run_003.csv", "truth_001.json",
                                                     "truth_002.json", "truth_003.json", "runs.csv"));
   const auto read = ReadRecording(folder_.Path("run_002.csv"));
-  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_TRUE(read) << read.error().message();
   EXPECT_EQ(read->size(), 20);
   EXPECT_THAT(folder_.Text("runs.csv"), AllOf(HasSubstr("\nrun_002.csv,run_002,2,0.04,"), EndsWith(",0.05,0\n")));
 }

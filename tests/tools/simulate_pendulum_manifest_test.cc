@@ -30,7 +30,7 @@ class ManifestTest : public testing::Test {
 
   SimulateOptions Options() const {
     const auto options = MakeSimulateOptions(flags_, {});
-    EXPECT_TRUE(options) << options.error().message;
+    EXPECT_TRUE(options) << options.error().message();
     return *options;
   }
 

@@ -47,7 +47,7 @@ TEST(MakeSimulateOptions, RefusesWrongOutputsAndNamesThem) {
     const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
     ASSERT_FALSE(options) << refusal.message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument) << refusal.message;
-    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(options.error().message(), HasSubstr(refusal.message));
   }
 }
 
@@ -61,7 +61,7 @@ SimulateFlags PlanFlags() {
 
 TEST(MakeSimulateOptions, PlansWithoutAnOutput) {
   const Result<SimulateOptions> options = MakeSimulateOptions(PlanFlags(), {});
-  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options) << options.error().message();
   EXPECT_TRUE(options->plan);
   EXPECT_THAT(options->synthetic.noise, DoubleEq(0.1 * kRadPerDeg));
   EXPECT_FALSE(MakeSimulateOptions(Flags("inertia=0.04," + std::string(kRelease)), {})->plan);
@@ -90,7 +90,7 @@ TEST(MakeSimulateOptions, RefusesFlagsThatAPlanIgnores) {
     const Result<SimulateOptions> options = MakeSimulateOptions(flags, {});
     ASSERT_FALSE(options) << refusal.message;
     EXPECT_EQ(options.error().code, StatusCode::kInvalidArgument) << refusal.message;
-    EXPECT_THAT(options.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(options.error().message(), HasSubstr(refusal.message));
   }
 }
 

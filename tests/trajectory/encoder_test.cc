@@ -30,7 +30,7 @@ SyntheticOptions Undamped() {
 
 Recording Simulated(const SyntheticOptions& options) {
   const Result<Recording> recording = SimulateRecording(options);
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   return *recording;
 }
 
@@ -95,7 +95,7 @@ TEST(SimulateRecording, RefusesEventsWithoutAnEncoder) {
     change(options);
     const Result<Recording> recording = SimulateRecording(options);
     EXPECT_FALSE(recording);
-    return recording ? std::string() : recording.error().message;
+    return recording ? std::string() : recording.error().message();
   };
   EXPECT_EQ(refused([](SyntheticOptions& o) { o.resolution = 0; }),
             "resolution is 0; it must be at least 1e-05 rad where rows are events");

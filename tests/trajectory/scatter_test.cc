@@ -32,7 +32,7 @@ Eigen::MatrixXd Draws(const std::vector<ScatteredParameter>& parameters, Ordered
   Eigen::MatrixXd draws(kSeeds, static_cast<Eigen::Index>(parameters.size()));
   for (int s = 0; s < kSeeds; ++s) {
     const auto values = ScatterParameters(parameters, order, static_cast<std::uint64_t>(s) + 1);
-    EXPECT_TRUE(values) << values.error().message;
+    EXPECT_TRUE(values) << values.error().message();
     draws.row(s) = Eigen::Map<const Eigen::RowVectorXd>(values->data(), draws.cols());
   }
   return draws;
@@ -124,7 +124,7 @@ TEST(ScatterParameters, FailsIfNoDrawIsWithinTheBounds) {
     const auto values = ScatterParameters(std::vector{parameter, {kBounded, 5, 0}}, order, 9);
     EXPECT_FALSE(values);
     EXPECT_EQ(values.error().code, StatusCode::kInvalidArgument);
-    return values.error().message;
+    return values.error().message();
   };
   constexpr ParameterInfo kFraction{"fraction", "f", "", "", 0.0, 1.0, ""};
   EXPECT_THAT(message({kFraction, -1e6, 1}),

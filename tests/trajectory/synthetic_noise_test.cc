@@ -68,7 +68,7 @@ TEST(SimulateRecording, HasFullyCorrelatedNoiseFromTheFirstSample) {
   std::vector<double> third;
   for (options.seed = 1; options.seed <= 2000; ++options.seed) {
     const Result<Recording> recording = SimulateRecording(options);
-    ASSERT_TRUE(recording) << recording.error().message;
+    ASSERT_TRUE(recording) << recording.error().message();
     first.push_back(recording->value[0] - 0.423);  // still held
     third.push_back(recording->value[2] - 0.423);
   }
@@ -113,7 +113,7 @@ TEST(SimulateRecording, DrawsItsNoiseByAFixedAlgorithm) {
   options.release_angle = 0.25;
   options.noise = 1;
   const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_THAT(recording->value[0] - 0.25, DoubleNear(-0.22770229850701265, 1e-15));
   EXPECT_THAT(recording->value[1] - 0.25, DoubleNear(-0.25937725029558445, 1e-15));
   EXPECT_THAT(recording->value[2] - 0.25, DoubleNear(-0.61281862908331552, 1e-15));

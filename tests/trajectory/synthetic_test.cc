@@ -63,7 +63,7 @@ std::vector<std::pair<double, double>> Peaks(const Recording& recording, double 
 
 TEST(SimulateRecording, ReproducesTheTextbookRigsFrequencyAndDamping) {
   const Result<Recording> recording = SimulateRecording(TextbookRig());
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   const std::vector<std::pair<double, double>> peaks = Peaks(*recording, 0.05);
   ASSERT_THAT(peaks.size(), Ge(6));
   const double period = (peaks[5].first - peaks[0].first) / 5;
@@ -76,7 +76,7 @@ TEST(SimulateRecording, IsHeldUntilTheRelease) {
   SyntheticOptions options = TextbookRig();
   options.zero = 0.012;
   const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   ASSERT_EQ(recording->size(), 2000);
   EXPECT_EQ(recording->time[0], 0);
   EXPECT_EQ(recording->time[1999], 19.99);
@@ -121,7 +121,7 @@ TEST(SimulateRecording, FollowsTheEllipticFunctionsOfTheUndampedPendulum) {
     options.parameters = {0.04, 0};
     options.release_angle = amplitude;
     const Result<Recording> recording = SimulateRecording(options);
-    ASSERT_TRUE(recording) << recording.error().message;
+    ASSERT_TRUE(recording) << recording.error().message();
     const double modulus = std::sin(amplitude / 2);
     for (Eigen::Index i = 0; i < recording->size(); ++i) {
       const double expected = 2 * std::asin(modulus * boost::math::jacobi_cd(modulus, 5 * recording->time[i]));
@@ -139,7 +139,7 @@ TEST(SimulateRecording, StopsAtTheEndOfTheDryFrictionStaircase) {
   options.release_angle = 0.43;
   options.zero = 0.5;
   const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   // Seven half swings of π/ω_n = π/5 s each.
   const auto first_at_rest = static_cast<Eigen::Index>(std::ceil(100 * 7 * kPi / 5));
   const Eigen::VectorXd rest = recording->value.tail(recording->size() - first_at_rest);
@@ -185,7 +185,7 @@ TEST(SimulateRecording, ShowsOnlyLevelsWithinTheRange) {
   options.noise = 3 * step;
   options.range = SensorRange{-15 * kRadFromDeg, -15 * kRadFromDeg + 180 * step};
   const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_EQ(recording->resolution, step);
   int at_the_bottom = 0;
   int at_the_top = 0;
@@ -206,7 +206,7 @@ TEST(SimulateRecording, EvaluatesAJitteredSampleAtItsStamp) {
   SyntheticOptions options = LinearPendulum();
   options.jitter = 0.001;
   const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   std::vector<double> offsets;
   for (Eigen::Index i = 1; i < recording->size(); ++i) {
     ASSERT_THAT(recording->value[i], DoubleNear(LinearSolution(recording->time[i]).first, 1e-12)) << "sample " << i;
@@ -220,7 +220,7 @@ TEST(SimulateRecording, KeepsStampsIncreasingUnderLargeJitter) {
   options.jitter = 0.05;
   options.start_time = 3;
   const Result<Recording> recording = SimulateRecording(options);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   EXPECT_EQ(recording->time[0], 3);
   EXPECT_TRUE(std::is_sorted(recording->time.begin(), recording->time.end(), std::less_equal<>()));
 }
@@ -325,7 +325,7 @@ TEST(SimulateRecording, RefusesAndNamesInvalidOptions) {
     const Result<Recording> recording = SimulateRecording(options);
     ASSERT_FALSE(recording) << refusal.message;
     EXPECT_EQ(recording.error().code, refusal.code) << refusal.message;
-    EXPECT_THAT(recording.error().message, HasSubstr(refusal.message));
+    EXPECT_THAT(recording.error().message(), HasSubstr(refusal.message));
   }
 }
 

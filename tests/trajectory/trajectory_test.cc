@@ -256,7 +256,7 @@ TEST(MakeTrajectory, RefusesAWrongNumberOfParameters) {
       MakeTrajectory(kCoulombModel, std::array{0.04, 0.001}, {StartKind::kRelease, 0, 0.4, 0}, Until(1));
   ASSERT_FALSE(trajectory);
   EXPECT_EQ(trajectory.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(trajectory.error().message, HasSubstr("model coulomb takes 3 parameters, not 2"));
+  EXPECT_THAT(trajectory.error().message(), HasSubstr("model coulomb takes 3 parameters, not 2"));
 }
 
 TEST(MakeTrajectory, RefusesANonPositiveInertia) {
@@ -265,8 +265,8 @@ TEST(MakeTrajectory, RefusesANonPositiveInertia) {
         MakeTrajectory(kCoulombModel, std::array{inertia, 0.0, 0.0}, {StartKind::kRelease, 0, 0.4, 0}, Until(1));
     ASSERT_FALSE(trajectory) << inertia;
     EXPECT_EQ(trajectory.error().code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(trajectory.error().message, HasSubstr("inertia"));
-    EXPECT_THAT(trajectory.error().message, HasSubstr("must be positive"));
+    EXPECT_THAT(trajectory.error().message(), HasSubstr("inertia"));
+    EXPECT_THAT(trajectory.error().message(), HasSubstr("must be positive"));
   }
 }
 
@@ -275,7 +275,7 @@ TEST(MakeTrajectory, RefusesAPendulumHeldByFriction) {
       MakeTrajectory(kCoulombModel, std::array{0.04, 0.0, 0.5}, {StartKind::kRelease, 0, 0.4, 0}, Until(1));
   ASSERT_FALSE(trajectory);
   EXPECT_EQ(trajectory.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(trajectory.error().message, HasSubstr("never moves"));
+  EXPECT_THAT(trajectory.error().message(), HasSubstr("never moves"));
 }
 
 // 2e10 small-angle periods in 20 s.
@@ -286,8 +286,8 @@ TEST(MakeTrajectory, RefusesAnAbsurdTimeScale) {
                                                        {StartKind::kRelease, 0, 0.4, 0}, options);
   ASSERT_FALSE(trajectory);
   EXPECT_EQ(trajectory.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(trajectory.error().message, HasSubstr("cannot be computed"));
-  EXPECT_THAT(trajectory.error().message, HasSubstr("time scale is too short"));
+  EXPECT_THAT(trajectory.error().message(), HasSubstr("cannot be computed"));
+  EXPECT_THAT(trajectory.error().message(), HasSubstr("time scale is too short"));
 }
 
 TEST(TraceTrajectory, StopsAtTheStepLimit) {

@@ -12,9 +12,6 @@
 
 namespace pendulum {
 
-/// An error kDataLoss with the message "NAME: SENTENCE".
-tl::unexpected<Status> Fault(const std::string& name, const std::string& sentence);
-
 /// A file open for reading. It may be a pipe.
 class InputFile {
  public:

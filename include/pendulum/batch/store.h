@@ -16,6 +16,7 @@
 #include "pendulum/base/status.h"
 #include "pendulum/batch/manifest.h"
 #include "pendulum/batch/provenance.h"
+#include "pendulum/batch/reason.h"
 #include "pendulum/batch/source.h"
 
 namespace SQLite {  // NOLINT(readability-identifier-naming): SQLiteCpp's
@@ -41,7 +42,7 @@ struct Shard {
 struct RunOutcome {
   Provenance provenance;
   int exit_code = 0;                ///< Exit code of fit_pendulum.
-  std::string reason;               ///< Why the run could not be fitted; empty if it was fitted.
+  Reason reason;                    ///< Why the run could not be fitted; empty if it was fitted.
   std::vector<std::string> models;  ///< The requested models; if there is no result, each gets a failed row.
   nlohmann::ordered_json result;    ///< ToJson of the identification; null if the run could not be fitted.
 };

@@ -33,8 +33,8 @@ Result<PreparedRecording> PrepareRecording(Recording read, const IdentifyOptions
 /// The same from a file; "-" is standard input. Errors as ReadRecording too.
 Result<PreparedRecording> PrepareFile(const std::string& path, const IdentifyOptions& options, std::optional<Rig> rig);
 
-/// The error of one run among several; adds the recording and, unless it is 0, the number of the release to the
-/// message.
-tl::unexpected<Status> ErrorOfRun(const Status& status, const std::string& path, int release);
+/// The error of one run among several; adds the recording and, unless it is 0, the number of the release to its place,
+/// which may be in the recording already: a line, a member of an archive.
+tl::unexpected<Status> ErrorOfRun(Status status, const std::string& path, int release);
 
 }  // namespace pendulum

@@ -180,13 +180,12 @@ Recording WithoutOutliers(Recording recording) {
 }
 
 tl::unexpected<Status> NeedsCalibration(const Recording& recording, const MotionModel& model) {
-  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
-  return WithTry(Error(StatusCode::kDataLoss, where + "the readings are in " + recording.unit + ", but model " +
-                                                  std::string(model.name) +
-                                                  " needs an angle: give readings at known angles with --calibration "
-                                                  "(a table such as counts,angle_deg), or fit --model linear, whose "
-                                                  "period and damping need no angle"),
-                 {"--model linear"});
+  return WithTry(
+      Fault(recording.path, "the readings are in " + recording.unit + ", but model " + std::string(model.name) +
+                                " needs an angle: give readings at known angles with --calibration "
+                                "(a table such as counts,angle_deg), or fit --model linear, whose "
+                                "period and damping need no angle"),
+      {"--model linear"});
 }
 
 ZeroMotion ZeroMotionOf(const Recording& recording, const SensorModel& sensor, const FitOptions& options) {
@@ -257,18 +256,15 @@ Result<void> CheckSensor(const Recording& recording, const MotionModel& model, c
   if (is_raw_angle && !model.gravity.is_linear()) return NeedsCalibration(recording, model);
   RETURN_IF_ERROR(CheckSensorOptions(sensor, options));
   if (recording.quantity != Quantity::kAcceleration) return {};
-  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   if (sensor.kind == SensorKind::kDirect && IsAlongRod(recording)) {
-    return Error(StatusCode::kDataLoss,
-                 where +
-                     "an acceleration along the rod swings twice as fast as the pendulum, which --model linear cannot "
-                     "describe; choose the axis across the rod, or another model");
+    return Fault(recording.path,
+                 "an acceleration along the rod swings twice as fast as the pendulum, which --model linear cannot "
+                 "describe; choose the axis across the rod, or another model");
   }
   if (options.start == StartKind::kRelease) {
-    return Error(
-        StatusCode::kFailedPrecondition,
-        where +
-            "an acceleration jumps at the release, and no sample shows when; --start moving fits the motion after it");
+    return ErrorAt(
+        StatusCode::kFailedPrecondition, recording.path,
+        "an acceleration jumps at the release, and no sample shows when; --start moving fits the motion after it");
   }
   return {};
 }
@@ -314,9 +310,7 @@ Result<FitProblem> MakeFitProblem(const Recording& recording, const FitOptions& 
   const Result<StartValues> start = options.search.start_values
                                         ? Result<StartValues>(*options.search.start_values)
                                         : FindStart(timed, *model, sensor, options, problem.sensor_starts);
-  if (!start)
-    return WithMessage(start.error(),
-                       recording.path.empty() ? start.error().message : recording.path + ": " + start.error().message);
+  if (!start) return Within(recording.path, start.error());
 
   problem.model = *model;
   problem.start = *start;

@@ -26,9 +26,10 @@ FreeSwing GivenSwing(const Recording& part) {
   return swing;
 }
 
-tl::unexpected<Status> NoSuchSwing(const std::string& where, int number, int count) {
-  return Error(StatusCode::kInvalidArgument, where + "there is no free swing " + std::to_string(number) +
-                                                 " in the recording; it has " + std::to_string(count));
+tl::unexpected<Status> NoSuchSwing(const std::string& path, int number, int count) {
+  return ErrorAt(
+      StatusCode::kInvalidArgument, path,
+      "there is no free swing " + std::to_string(number) + " in the recording; it has " + std::to_string(count));
 }
 
 /// Warns of a change of the steps. Outside the chosen swings, it says that the clock may be wrong there or here, unless
@@ -56,23 +57,22 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
     selected = std::move(part);
   }
   const Recording* const part = selected ? &*selected : &recording;
-  const std::string where = recording.path.empty() ? "" : recording.path + ": ";
   std::optional<StepChange> change;
   if (!from_given || !to_given) {
     const auto clock = CheckClock(*part, choice.is_spring || (rig && rig->is_spring));
-    if (!clock) return WithMessage(clock.error(), where + clock.error().message);
+    if (!clock) return Within(recording.path, clock.error());
     change = *clock;
   }
   if (IsUndersampled(*part, rig)) {
-    if (choice.release > 1) return NoSuchSwing(where, choice.release, 1);
+    if (choice.release > 1) return NoSuchSwing(recording.path, choice.release, 1);
     return WithWarning(ChosenSwings{{WholeRecording(*part)}, {1}, {}}, change);
   }
   if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part, choice.is_spring || (rig && rig->is_spring));
-  if (!found) return WithMessage(found.error(), where + found.error().message);
+  if (!found) return Within(recording.path, found.error());
   ChosenSwings swings{*std::move(found), {}, {}};
   const auto count = static_cast<int>(swings.found.size());
-  if (choice.release > count) return NoSuchSwing(where, choice.release, count);
+  if (choice.release > count) return NoSuchSwing(recording.path, choice.release, count);
   if (choice.release == SwingChoice::kAll) {
     for (int k = 1; k <= count; ++k) swings.chosen.push_back(k);
     return WithWarning(std::move(swings), change);

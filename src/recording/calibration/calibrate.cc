@@ -172,10 +172,10 @@ Check CheckCounts(const CalibrationTable& table, int order) {
 Check CheckInputRange(const CalibrationTable& table, const std::optional<SensorRange>& range) {
   for (Index i = 0; range && i < table.size(); ++i) {
     if (table.reading[i] >= range->low && table.reading[i] <= range->high) continue;
-    return Error(StatusCode::kInvalidArgument, table.Place(i) + ": the reading " + NumberText(table.reading[i]) + " " +
-                                                   table.input + " is outside the sensor's range, " +
-                                                   NumberText(range->low) + " to " + NumberText(range->high) +
-                                                   "; correct the range or the row");
+    return ErrorAt(StatusCode::kInvalidArgument, table.Place(i),
+                   "the reading " + NumberText(table.reading[i]) + " " + table.input +
+                       " is outside the sensor's range, " + NumberText(range->low) + " to " + NumberText(range->high) +
+                       "; correct the range or the row");
   }
   return {};
 }

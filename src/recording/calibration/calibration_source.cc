@@ -50,11 +50,12 @@ Result<Calibration> CalibrationFromText(std::string_view text, const std::string
   if (IsJson(text)) return ParseCalibration(text, name);
   std::string lines(text);
   if (content == Content::kReturns) std::ranges::replace(lines, '\r', '\n');
-  const Result<CalibrationTable> table = ParseCalibrationTable(lines, name);
+  Result<CalibrationTable> table = ParseCalibrationTable(lines, name);
   if (!table) {
-    return WithMessage(table.error(), table.error().message +
-                                          ". A calibration is JSON, or a table with a column of counts or volts and a "
-                                          "column of angles, such as adc_counts,angle_deg");
+    table.error().sentence +=
+        ". A calibration is JSON, or a table with a column of counts or volts and a column of angles, such as "
+        "adc_counts,angle_deg";
+    return tl::unexpected(std::move(table).error());
   }
   ASSIGN_OR_RETURN(CalibrationFit fit, CalibrateSensor(*table, 1));
   fit.calibration.note = NoteOn(*table, fit);

@@ -21,17 +21,15 @@ Result<void> CheckListed(const ListedFile& file, const std::map<fs::path, std::s
   std::error_code error;
   const fs::file_type type = fs::status(file.path, error).type();
   if (type == fs::file_type::not_found) {
-    return Error(StatusCode::kNotFound, file.place + ": there is no file " + file.path.string() +
-                                            "; paths are relative to the folder of the list");
+    return ErrorAt(StatusCode::kNotFound, file.place,
+                   "there is no file " + file.path.string() + "; paths are relative to the folder of the list");
   }
   if (type == fs::file_type::directory) {
-    return Error(StatusCode::kDataLoss,
-                 file.place + ": " + file.path.string() + " is a directory; name a CSV file in it");
+    return Fault(file.place, file.path.string() + " is a directory; name a CSV file in it");
   }
   const auto found = places.find(file.path.lexically_normal());
   if (found == places.end()) return {};
-  return Error(StatusCode::kDataLoss,
-               file.place + ": " + file.path.string() + " is also at " + found->second + "; keep one of them");
+  return Fault(file.place, file.path.string() + " is also at " + found->second + "; keep one of them");
 }
 
 }  // namespace
@@ -52,7 +50,7 @@ Result<std::vector<ListedFile>> ReadDataList(const fs::path& path) {
     places.emplace(files.back().path.lexically_normal(), files.back().place);
   }
   if (!files.empty()) return files;
-  return Error(StatusCode::kFailedPrecondition, lines.name() + ": the list names no file; give one path per line");
+  return ErrorAt(StatusCode::kFailedPrecondition, lines.name(), "the list names no file; give one path per line");
 }
 
 }  // namespace pendulum

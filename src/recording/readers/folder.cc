@@ -117,9 +117,9 @@ Result<std::optional<std::size_t>> FindNamed(const Folder& folder, ReadOptions& 
     if (!is_named(file_of(i))) continue;
     if (by_file && file_of(i) == file_of(*by_file)) {
       return WithTry(
-          Error(StatusCode::kInvalidArgument, folder.name + ": --value_column is " + Quoted(flag) + ", but both " +
-                                                  Quoted(folder.paths[*by_file]) + " and " + Quoted(folder.paths[i]) +
-                                                  " have this name; give the path within the " + folder.kind),
+          ErrorAt(StatusCode::kInvalidArgument, folder.name,
+                  "--value_column is " + Quoted(flag) + ", but both " + Quoted(folder.paths[*by_file]) + " and " +
+                      Quoted(folder.paths[i]) + " have this name; give the path within the " + folder.kind),
           {FlagOf(folder.paths[*by_file] + flag.substr(file_of(i).size()))});
     }
     by_file = i;
@@ -171,7 +171,8 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
   for (std::size_t i = 0; i < std::min(folder.paths.size(), kMaxMembers); ++i) {
     MemberSummary summary = SummarizeMember(folder, i, options);
     if (summary.fault && warnings.size() < kMaxWarnings)
-      warnings.push_back({.code = "unreadable_member", .finding = summary.fault->message});
+      warnings.push_back(
+          {.code = "unreadable_member", .finding = summary.fault->sentence, .about = {.file = summary.fault->place}});
     if (summary.fault && !fault) fault = summary.fault;
     if (!summary.candidates.empty()) summaries.push_back(std::move(summary));
   }
@@ -199,7 +200,7 @@ Result<std::optional<std::size_t>> ChooseByNames(const Folder& folder, const Rea
     const std::string flag = FlagOf(folder.paths[first.index], first.candidates.front());
     auto several = WithTry(Fault(folder.name, "columns " + SeveralQuantities(candidates)), {flag});
     if (options.preview != nullptr) {
-      options.preview->questions = {{several.value().message, {"value_column"}, {flag}, ValuesOf(folder, summaries)}};
+      options.preview->questions = {{several.value().message(), {"value_column"}, {flag}, ValuesOf(folder, summaries)}};
     }
     return several;
   }
@@ -237,7 +238,7 @@ tl::unexpected<Status> NoneReadable(const Folder& folder, const Status& first) {
   }
   if (!flags.empty() && !has_column) flags.push_back(FlagOf(folder.paths.front()));
   tl::unexpected<Status> none = NoMember(folder);
-  none.value().message += ". The first " + folder.member + " says: " + first.message;
+  none.value().sentence += ". The first " + folder.member + " says: " + first.message();
   return WithTry(std::move(none), std::move(flags));
 }
 

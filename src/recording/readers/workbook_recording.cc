@@ -66,7 +66,7 @@ tl::unexpected<Status> NoWorkbook(ChildFailure failure, const ChildLimits& limit
       return Fault(
           name, what + " unpacks to more than " + SizeText(limits.answer_bytes) + ", too many for a recording" + less);
   }
-  return Error(StatusCode::kTryAgain, name + ": the process that reads it could not be started; try again");
+  return ErrorAt(StatusCode::kTryAgain, name, "the process that reads it could not be started; try again");
 }
 
 /// Phyphox writes the sheets "Metadata Device" and "Metadata Time".

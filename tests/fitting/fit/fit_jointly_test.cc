@@ -380,7 +380,7 @@ TEST(FitJointly, DoesNotConvergeForRigsOfDifferentInertia) {
 void ExpectRefused(const Result<JointFit>& refused, StatusCode code, const std::string& message) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, code);
-  EXPECT_EQ(refused.error().message, message);
+  EXPECT_EQ(refused.error().message(), message);
 }
 
 TEST(FitJointly, RefusesFewerThanTwoRecordings) {

@@ -284,7 +284,7 @@ TEST(FitRecording, RefusesAnUnknownModel) {
   const auto refused = FitRecording(Must(SimulateRecording(NoisyRun())), ModelOptions("columb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(refused.error().message, "there is no model 'columb'; the models are " + MotionModelNames());
+  EXPECT_EQ(refused.error().message(), "there is no model 'columb'; the models are " + MotionModelNames());
 }
 
 TEST(FitRecording, NamesTheFileWithoutASwing) {
@@ -294,7 +294,7 @@ TEST(FitRecording, NamesTheFileWithoutASwing) {
   const auto refused = FitRecording(constant, ModelOptions("coulomb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(refused.error().message,
+  EXPECT_EQ(refused.error().message(),
             "run.csv: the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 

@@ -51,11 +51,11 @@ TEST(MakeJointProblem, RefusesASingleRecordingAndAFitWithoutSharedParameters) {
   const auto single = MakeJointProblem(one, kPhysical);
   ASSERT_FALSE(single);
   EXPECT_EQ(single.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(single.error().message, "a joint fit needs two recordings or more; there is one");
+  EXPECT_EQ(single.error().message(), "a joint fit needs two recordings or more; there is one");
   const std::vector<JointRun> two = {one[0], {runs.recordings[1], runs.alone[1], runs.options}};
   const auto nothing = MakeJointProblem(two, {"stiction"});
   ASSERT_FALSE(nothing);
-  EXPECT_EQ(nothing.error().message, "model coulomb has none of the shared parameters");
+  EXPECT_EQ(nothing.error().message(), "model coulomb has none of the shared parameters");
 }
 
 TEST(JointProblem, NamesTheRecordingOfAnUnsharedParameter) {

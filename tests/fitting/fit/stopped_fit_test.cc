@@ -170,7 +170,7 @@ TEST(StoppedFit, IsAnErrorWithAMessage) {
   const Result<FitReport> fit = FitRecording(Must(SimulateRecording(NoisyRun())), options);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code, StatusCode::kTryAgain);
-  EXPECT_THAT(fit.error().message, HasSubstr("stopped before it was done"));
+  EXPECT_THAT(fit.error().message(), HasSubstr("stopped before it was done"));
 }
 
 TEST(StoppedFit, IsAnErrorInABootstrapToo) {

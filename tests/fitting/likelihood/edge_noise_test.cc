@@ -210,7 +210,7 @@ TEST(EdgeNoise, IsRefusedForRowsThatAreNotEvents) {
   const auto fit = FitRecording(WithEdges(Must(SimulateRecording(run)), options.noise), options);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(fit.error().message, HasSubstr("--noise edges needs rows that exist only where the count changes"));
+  EXPECT_THAT(fit.error().message(), HasSubstr("--noise edges needs rows that exist only where the count changes"));
 }
 
 }  // namespace

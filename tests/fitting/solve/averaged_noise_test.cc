@@ -36,7 +36,7 @@ FitReport FitOf(const Recording& recording) {
   FitOptions options;
   options.threads = 1;
   const Result<FitReport> fit = FitRecording(recording, options);
-  EXPECT_TRUE(fit) << fit.error().message;
+  EXPECT_TRUE(fit) << fit.error().message();
   return *fit;
 }
 
@@ -98,7 +98,7 @@ TEST(FitRecording, NeedsMeansForAveragedNoise) {
   averaged.noise = NoiseFamily::kAveraged;
   const Result<FitReport> fit = FitRecording(SimulateRecording(options).value(), averaged);
   ASSERT_FALSE(fit);
-  EXPECT_NE(fit.error().message.find("--oversample"), std::string::npos) << fit.error().message;
+  EXPECT_NE(fit.error().message().find("--oversample"), std::string::npos) << fit.error().message();
 }
 
 }  // namespace

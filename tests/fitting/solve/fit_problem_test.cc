@@ -46,8 +46,8 @@ Rig RigOf(double gravity_torque) {
 TEST(MakeFitProblem, ListsTheModelsForAnUnknownName) {
   const Status status = RefusalOf(TextbookRun("coulomb"), ModelOptions("columb"));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(status.message, HasSubstr("columb"));
-  for (const MotionModel& model : MotionModels()) EXPECT_THAT(status.message, HasSubstr(std::string(model.name)));
+  EXPECT_THAT(status.message(), HasSubstr("columb"));
+  for (const MotionModel& model : MotionModels()) EXPECT_THAT(status.message(), HasSubstr(std::string(model.name)));
 }
 
 TEST(MakeFitProblem, BoundsFrictionAtZeroAndTheReleaseByTheHold) {
@@ -125,14 +125,14 @@ TEST(MakeFitProblem, AcceptsFixedValuesInReportUnits) {
 TEST(MakeFitProblem, ListsTheParametersIfTheModelLacksTheFixedParameter) {
   const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"coulomb", 0.001}}));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(status.message, AllOf(HasSubstr("viscous has no parameter 'coulomb'"),
-                                    HasSubstr("inertia, viscous, release_angle, release_time, zero_angle")));
+  EXPECT_THAT(status.message(), AllOf(HasSubstr("viscous has no parameter 'coulomb'"),
+                                      HasSubstr("inertia, viscous, release_angle, release_time, zero_angle")));
 }
 
 TEST(MakeFitProblem, RefusesToFixAParameterOfTheOtherKindOfStart) {
   const Status status = RefusalOf(TextbookRun("viscous"), Fixing("viscous", {{"initial_angle", 0.4}}));
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(status.message, HasSubstr("'initial_angle'"));
+  EXPECT_THAT(status.message(), HasSubstr("'initial_angle'"));
 }
 
 TEST(MakeFitProblem, RefusesToFixAValueOutsideItsBounds) {
@@ -143,11 +143,11 @@ TEST(MakeFitProblem, RefusesToFixAValueOutsideItsBounds) {
   for (const auto& [name, value] : refused) {
     const Status status = RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{name, value}}));
     EXPECT_EQ(status.code, StatusCode::kInvalidArgument) << name << " " << value;
-    EXPECT_THAT(status.message, HasSubstr(name + " cannot be fixed at")) << value;
+    EXPECT_THAT(status.message(), HasSubstr(name + " cannot be fixed at")) << value;
   }
-  EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"inertia", 0.0}})).message,
+  EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"inertia", 0.0}})).message(),
               HasSubstr("greater than 1e-30"));
-  EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", -1.0}})).message,
+  EXPECT_THAT(RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"coulomb", -1.0}})).message(),
               HasSubstr("at least 0"));
 }
 
@@ -155,8 +155,8 @@ TEST(MakeFitProblem, RefusesToFixTheReleaseOutsideTheHold) {
   for (const double time : {-0.1, 5.0}) {
     const Status status = RefusalOf(TextbookRun("coulomb"), Fixing("coulomb", {{"release_time", time}}));
     EXPECT_EQ(status.code, StatusCode::kInvalidArgument) << time;
-    EXPECT_THAT(status.message, HasSubstr("release_time cannot be fixed at")) << time;
-    EXPECT_THAT(status.message, HasSubstr("it must be at least 0 and at most ")) << time;
+    EXPECT_THAT(status.message(), HasSubstr("release_time cannot be fixed at")) << time;
+    EXPECT_THAT(status.message(), HasSubstr("it must be at least 0 and at most ")) << time;
   }
 }
 
@@ -179,7 +179,7 @@ Status NoiseRefusal(double resolution) {
 TEST(MakeFitProblem, RefusesQuantizedNoiseWithoutAResolution) {
   const Status status = NoiseRefusal(0);
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(status.message,
+  EXPECT_EQ(status.message(),
             "--noise quantized needs the resolution of the readings, but the readings show no discrete levels; give "
             "--resolution");
 }

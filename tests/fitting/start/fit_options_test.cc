@@ -99,7 +99,7 @@ TEST(Prior, IsRefusedForAParameterTheModelLacks) {
   options.priors = {{"drag", {0.1, 0.1}}};
   const Status status = RefusalOf(options);
   EXPECT_EQ(status.code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(status.message,
+  EXPECT_EQ(status.message(),
             "model viscous has no parameter 'drag' to give a prior with this start; it has inertia, viscous, "
             "release_angle, release_time, zero_angle");
 }
@@ -154,14 +154,14 @@ TEST(Bounds, AreRefusedIfTheyLeaveNoValue) {
     FitOptions options = ModelOptions("viscous");
     options.bounds = {{"viscous", range}};
     EXPECT_EQ(RefusalOf(options).code, StatusCode::kInvalidArgument);
-    EXPECT_EQ(RefusalOf(options).message, message);
+    EXPECT_EQ(RefusalOf(options).message(), message);
   }
   FitOptions options = ModelOptions("viscous");
   options.bounds = {{"inertia", {-2, -1}}};
-  EXPECT_EQ(RefusalOf(options).message,
+  EXPECT_EQ(RefusalOf(options).message(),
             "the bounds of inertia allow no value; it must be greater than 1e-30, and may be fixed with --fix");
   options.bounds = {{"coulomb", {0, 1}}};
-  EXPECT_THAT(RefusalOf(options).message, HasSubstr("model viscous has no parameter 'coulomb' to bound"));
+  EXPECT_THAT(RefusalOf(options).message(), HasSubstr("model viscous has no parameter 'coulomb' to bound"));
 }
 
 TEST(Init, SetsTheStartOfTheSearch) {
@@ -186,12 +186,13 @@ TEST(Init, IsRefusedOutsideTheBounds) {
   FitOptions options = ModelOptions("viscous");
   options.initial = {{"viscous", -1.0}};
   EXPECT_EQ(RefusalOf(options).code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(RefusalOf(options).message, "viscous cannot be started at -1; it must be at least 0");
+  EXPECT_EQ(RefusalOf(options).message(), "viscous cannot be started at -1; it must be at least 0");
   options.initial = {{"viscous", 0.5}};
   options.bounds = {{"viscous", {0.001, 0.25}}};
-  EXPECT_EQ(RefusalOf(options).message, "viscous cannot be started at 0.5; it must be at least 0.001 and at most 0.25");
+  EXPECT_EQ(RefusalOf(options).message(),
+            "viscous cannot be started at 0.5; it must be at least 0.001 and at most 0.25");
   options.initial = {{"drag", 0.5}};
-  EXPECT_THAT(RefusalOf(options).message,
+  EXPECT_THAT(RefusalOf(options).message(),
               HasSubstr("has no parameter 'drag' to give an initial value with this start"));
 }
 
@@ -343,7 +344,7 @@ TEST(Counts, AreRefusedForAModelThatNeedsAnAngle) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, StatusCode::kDataLoss);
     EXPECT_EQ(
-        refused.error().message,
+        refused.error().message(),
         (path.empty() ? "" : "run.csv: ") +
             std::string(
                 "the readings are in counts, but model coulomb needs an angle: give readings at known angles with "

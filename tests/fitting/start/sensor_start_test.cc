@@ -28,9 +28,9 @@ using testing::Le;
 
 FitReport Fit(const SyntheticOptions& options, const FitOptions& fit = {}) {
   const Result<Recording> recording = SimulateRecording(options);
-  EXPECT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording) << recording.error().message();
   const Result<FitReport> report = FitRecording(*recording, fit);
-  EXPECT_TRUE(report) << report.error().message;
+  EXPECT_TRUE(report) << report.error().message();
   return report.value_or(FitReport{});
 }
 
@@ -128,8 +128,8 @@ TEST(FitRecording, RefusesAZeroScaleOrRadiusOfASensor) {
     EXPECT_FALSE(begun || fixed);
     if (begun || fixed) return std::string();
     EXPECT_EQ(begun.error().code, StatusCode::kInvalidArgument);
-    EXPECT_EQ(fixed.error().message, begun.error().message);
-    return begun.error().message;
+    EXPECT_EQ(fixed.error().message(), begun.error().message());
+    return begun.error().message();
   };
   EXPECT_EQ(message(MeasuredSwing(Quantity::kRate, SensorKind::kScaledRate, {1.65, 0.115}, 0.002), "rate_scale"),
             "rate_scale cannot be 0, because the sensor would then show no motion; it must be other than 0");
@@ -194,12 +194,12 @@ TEST(FitRecording, RefusesParametersAnAccelerationCannotDetermine) {
   options.model = "linear";
   const auto linear = FitRecording(along, options);
   ASSERT_FALSE(linear);
-  EXPECT_THAT(linear.error().message, HasSubstr("swings twice as fast"));
+  EXPECT_THAT(linear.error().message(), HasSubstr("swings twice as fast"));
   options.model = "coulomb";
   options.start = StartKind::kRelease;
   const auto released = FitRecording(along, options);
   ASSERT_FALSE(released);
-  EXPECT_THAT(released.error().message, HasSubstr("jumps at the release"));
+  EXPECT_THAT(released.error().message(), HasSubstr("jumps at the release"));
 }
 
 }  // namespace

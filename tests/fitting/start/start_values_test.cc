@@ -223,8 +223,8 @@ TEST(EstimateStartValues, RefuseAReleaseWithoutAHold) {
   const auto start = EstimateStartValues(recording, MovingRun("coulomb").model, StartKind::kRelease);
   ASSERT_FALSE(start);
   EXPECT_EQ(start.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(start.error().message, HasSubstr("the recording does not begin with a hold"));
-  EXPECT_THAT(start.error().message, HasSubstr("--start moving"));
+  EXPECT_THAT(start.error().message(), HasSubstr("the recording does not begin with a hold"));
+  EXPECT_THAT(start.error().message(), HasSubstr("--start moving"));
 }
 
 TEST(EstimateStartValues, UseTheRequestedStart) {
@@ -239,7 +239,7 @@ TEST(EstimateStartValues, RefuseARecordingWithoutASwing) {
   const auto start = EstimateStartValues(Must(SimulateRecording(options)), options.model, std::nullopt);
   ASSERT_FALSE(start);
   EXPECT_EQ(start.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(start.error().message, HasSubstr("are needed"));
+  EXPECT_THAT(start.error().message(), HasSubstr("are needed"));
 }
 
 }  // namespace

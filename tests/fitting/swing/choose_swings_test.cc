@@ -71,10 +71,10 @@ TEST(ChooseSwings, RefusesTheNumberOfAMissingSwing) {
   const auto swings = ChooseSwings(TwoReleases(), {.release = 3});
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(swings.error().message, "there is no free swing 3 in the recording; it has 2");
+  EXPECT_EQ(swings.error().message(), "there is no free swing 3 in the recording; it has 2");
   Recording named = TwoReleases();
   named.path = "two.csv";
-  EXPECT_EQ(ChooseSwings(named, {.release = 3}).error().message,
+  EXPECT_EQ(ChooseSwings(named, {.release = 3}).error().message(),
             "two.csv: there is no free swing 3 in the recording; it has 2");
 }
 
@@ -114,7 +114,7 @@ TEST(ChooseSwings, RefusesAnEmptyWindow) {
   const auto swings = ChooseSwings(TwoReleases(), Between(5, 4));
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kInvalidArgument);
-  EXPECT_EQ(swings.error().message, "the window [5, 4] s is empty; its start must be before its end");
+  EXPECT_EQ(swings.error().message(), "the window [5, 4] s is empty; its start must be before its end");
 }
 
 TEST(ChooseSwings, NamesTheFileWithoutASwing) {
@@ -124,7 +124,7 @@ TEST(ChooseSwings, NamesTheFileWithoutASwing) {
   const auto swings = ChooseSwings(constant, {});
   ASSERT_FALSE(swings);
   EXPECT_EQ(swings.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(swings.error().message,
+  EXPECT_EQ(swings.error().message(),
             "run.csv: the reading is constant, so there is no swing; check the sensor, or choose another column");
 }
 

@@ -51,10 +51,10 @@ TEST(CheckClock, RefusesAClockThatChangesItsRate) {
       const auto checked = CheckClock(WithFasterClock(Recorded(1), row, factor));
       ASSERT_FALSE(checked) << factor << ", " << row;
       EXPECT_EQ(checked.error().code, StatusCode::kDataLoss);
-      EXPECT_THAT(checked.error().message, HasSubstr("a swing takes as many rows as before: the clock changed"));
+      EXPECT_THAT(checked.error().message(), HasSubstr("a swing takes as many rows as before: the clock changed"));
     }
   }
-  EXPECT_THAT(CheckClock(WithFasterClock(Recorded(1), 1000, 1.1)).error().message,
+  EXPECT_THAT(CheckClock(WithFasterClock(Recorded(1), 1000, 1.1)).error().message(),
               testing::AllOf(testing::StartsWith("the times change their rate at 10 s, from 10 ms to 11 ms"),
                              testing::EndsWith("with --to 10 or --from 10")));
 }
@@ -63,7 +63,7 @@ TEST(CheckClock, ReturnsAChangeWithinTheHold) {
   for (const double factor : {0.97, 1.03, 2.0}) {
     for (const Eigen::Index row : {25, 150}) {
       const auto checked = CheckClock(WithFasterClock(Recorded(1), row, factor));
-      ASSERT_TRUE(checked) << checked.error().message;
+      ASSERT_TRUE(checked) << checked.error().message();
       ASSERT_TRUE(*checked) << factor;
       EXPECT_DOUBLE_EQ((*checked)->time, 0.01 * static_cast<double>(row));
       EXPECT_NEAR((*checked)->before, 0.01, 1e-9);
@@ -86,7 +86,7 @@ TEST(CheckClock, AcceptsSamplingThatChangesItsRate) {
     const Recording recording = Recorded(seed);
     for (const Eigen::Index row : {450, 1000, 1700}) {
       const auto checked = CheckClock(WithSlowerSampling(recording, row));
-      ASSERT_TRUE(checked) << checked.error().message;
+      ASSERT_TRUE(checked) << checked.error().message();
       EXPECT_FALSE(*checked) << row;
     }
   }
@@ -116,7 +116,7 @@ TEST(CheckClock, KnowsTorsionPendulums) {
   for (const bool is_spring : {false, true}) {
     for (const double factor : {1.01, 1.015, 1.02, 1.1}) {
       const auto checked = CheckClock(Resampled(torsion, 1000, factor), is_spring);
-      EXPECT_TRUE(checked.has_value()) << factor << ", " << checked.error().message;
+      EXPECT_TRUE(checked.has_value()) << factor << ", " << checked.error().message();
     }
   }
   EXPECT_FALSE(CheckClock(WithFasterClock(torsion, 1000, 1.1), true).has_value());
@@ -152,7 +152,7 @@ TEST(CheckClock, AcceptsTimesThatAreOrBecomeUneven) {
     const Recording run = Recorded(seed);
     for (const Recording& uneven : {Uneven(run, 0, 0.004), Uneven(run, 1000, 0.004), InPackets(run, 1000)}) {
       const auto checked = CheckClock(uneven);
-      EXPECT_TRUE(checked.has_value()) << seed << ", " << checked.error().message;
+      EXPECT_TRUE(checked.has_value()) << seed << ", " << checked.error().message();
     }
   }
 }
@@ -160,7 +160,7 @@ TEST(CheckClock, AcceptsTimesThatAreOrBecomeUneven) {
 TEST(CheckClock, GivesTimesThatDistinguishSamples) {
   Recording recording = WithFasterClock(Recorded(1), 1000, 1.1);
   recording.time.array() += 1700000000;
-  EXPECT_THAT(CheckClock(recording).error().message, testing::EndsWith("with --to 1700000010 or --from 1700000010"));
+  EXPECT_THAT(CheckClock(recording).error().message(), testing::EndsWith("with --to 1700000010 or --from 1700000010"));
 }
 
 }  // namespace

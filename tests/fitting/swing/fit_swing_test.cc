@@ -179,7 +179,7 @@ TEST(FitSwing, ReturnsTheErrorOfTheFit) {
   const auto refused = FitSwing(recording, swing, ModelOptions("columb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(refused.error().message, HasSubstr("there is no model 'columb'"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("there is no model 'columb'"));
 }
 
 // A phone's "Linear Acceleration" that contains gravity, across the rod and along it, and an acceleration of which the

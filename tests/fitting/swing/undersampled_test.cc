@@ -181,7 +181,7 @@ TEST(FitUndersampled, IsNotTriedWithATableOfMaxima) {
   maxima.value = 0.5 * (-0.05 * maxima.time.array()).exp();
   const auto chosen = ChooseSwings(maxima, {}, std::nullopt);
   ASSERT_FALSE(chosen);
-  EXPECT_THAT(chosen.error().message, testing::HasSubstr("the maxima of a swing, one of each period"));
+  EXPECT_THAT(chosen.error().message(), testing::HasSubstr("the maxima of a swing, one of each period"));
 }
 
 TEST(FitUndersampled, RejectsReadingsWithNoiseOnly) {
@@ -200,7 +200,7 @@ TEST(FitUndersampled, RefusesARelease) {
   const auto refused = FitUndersampled(recording, WholeRecording(recording), options);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(refused.error().message, HasSubstr("--start moving"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("--start moving"));
 }
 
 TEST(FitUndersampled, RefusesAConstantReading) {
@@ -209,7 +209,7 @@ TEST(FitUndersampled, RefusesAConstantReading) {
   const auto refused = FitUndersampled(recording, WholeRecording(recording), {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(refused.error().message, HasSubstr("constant"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("constant"));
 }
 
 // ---- Without the rig's geometry ------------------------------------------------------------------------------------
@@ -238,9 +238,9 @@ TEST(FitSwing, AsksAboutAnImplausiblePeriod) {
     const Result<SwingFit> result = FitSwing(recording, swings.found.front(), ModelOptions("viscous"));
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, StatusCode::kFailedPrecondition);
-    EXPECT_THAT(result.error().message, HasSubstr("the periods of pendulums are 0.1 s to 20 s"));
-    EXPECT_THAT(result.error().message, HasSubstr(factor > 1 ? "--time_column NAME:ms" : "--time_column NAME:s"));
-    EXPECT_THAT(result.error().message, HasSubstr("--gravity linear"));
+    EXPECT_THAT(result.error().message(), HasSubstr("the periods of pendulums are 0.1 s to 20 s"));
+    EXPECT_THAT(result.error().message(), HasSubstr(factor > 1 ? "--time_column NAME:ms" : "--time_column NAME:s"));
+    EXPECT_THAT(result.error().message(), HasSubstr("--gravity linear"));
   }
 }
 
@@ -313,7 +313,7 @@ TEST(FitUndersampled, AsksForTheOtherAxisOfAnAccelerationAlongTheRod) {
   const Recording recording = Must(SimulateRecording(run));
   const auto refused = FitUndersampled(recording, WholeRecording(recording), ModelOptions("coulomb"));
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("choose the axis across the rod with --value_column"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("choose the axis across the rod with --value_column"));
 }
 
 TEST(FitUndersampled, RefusesAFrequencyFarFromThePredictionOfTheRig) {
@@ -359,7 +359,7 @@ TEST(ChooseSwings, UsesAnUndersampledRecordingAsAWhole) {
   EXPECT_EQ(swings.found[0].to, 29);
   const auto second = ChooseSwings(recording, {.release = 2}, TextbookRig());
   ASSERT_FALSE(second);
-  EXPECT_THAT(second.error().message, HasSubstr("there is no free swing 2"));
+  EXPECT_THAT(second.error().message(), HasSubstr("there is no free swing 2"));
   EXPECT_EQ(Must(ChooseSwings(recording, {.from = 5, .to = 25}, TextbookRig())).found[0].from, 5);
 }
 

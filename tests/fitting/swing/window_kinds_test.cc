@@ -82,7 +82,7 @@ Tally FitAll(int count, const std::function<KindRun(Draw&)>& make) {
                : Result<SwingFit>(tl::unexpected(swings.error()));
     if (!result || result->fit.termination != Termination::kConverged) {
       ++tally.refused;
-      std::cout << "run " << k << ": " << (result ? result->fit.reason : result.error().message) << "\n";
+      std::cout << "run " << k << ": " << (result ? result->fit.reason : result.error().message()) << "\n";
       continue;
     }
     const double deviation = LargestDeviation(run, result->fit);
@@ -310,8 +310,8 @@ TEST(FitSwing, AsksAboutTheUnitOfTimeIfAPendulumIsTooSlow) {
   const auto refused = FitSwing(run.recording, swings.found.front(), ModelOptions("coulomb"));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(refused.error().message, testing::HasSubstr("--time_column NAME:ms"));
-  EXPECT_THAT(refused.error().message, testing::HasSubstr("--gravity linear"));
+  EXPECT_THAT(refused.error().message(), testing::HasSubstr("--time_column NAME:ms"));
+  EXPECT_THAT(refused.error().message(), testing::HasSubstr("--gravity linear"));
 }
 
 }  // namespace

@@ -320,7 +320,7 @@ void ExpectError(const LinearizedFit& fit, StatusCode code, const std::string& m
   const Result<Posterior> posterior = SamplePosterior(fit, 1);
   ASSERT_FALSE(posterior);
   EXPECT_EQ(posterior.error().code, code);
-  EXPECT_THAT(posterior.error().message, HasSubstr(message));
+  EXPECT_THAT(posterior.error().message(), HasSubstr(message));
 }
 
 TEST(SamplePosterior, RefusesInconsistentSizes) {

@@ -24,7 +24,7 @@ constexpr double kDigits = 1e-12;
 
 CalibrationFit FitOf(const CalibrationTable& table, int order) {
   const Result<CalibrationFit> fit = CalibrateSensor(table, order);
-  EXPECT_TRUE(fit.has_value()) << (fit ? "" : fit.error().message);
+  EXPECT_TRUE(fit.has_value()) << (fit ? "" : fit.error().message());
   return fit.value_or(CalibrationFit());
 }
 
@@ -34,7 +34,7 @@ std::string FaultOf(const CalibrationTable& table, int order, StatusCode code = 
   EXPECT_FALSE(fit.has_value());
   if (fit) return "";
   EXPECT_EQ(fit.error().code, code);
-  return fit.error().message;
+  return fit.error().message();
 }
 
 double StdError(const CalibrationFit& fit, int k) { return std::sqrt(fit.calibration.covariance(k, k)); }
@@ -212,9 +212,9 @@ TEST(CalibrateSensor, DoesNotDependOnTheOrderOfRows) {
 TEST(CalibrateSensor, WritesJsonThatParseCalibrationReads) {
   for (const int order : {1, 2, 5}) {
     const auto fit = CalibrateSensor(TableOf(kReferenceTable), order, SensorRange{0, 1023});
-    ASSERT_TRUE(fit) << fit.error().message;
+    ASSERT_TRUE(fit) << fit.error().message();
     const auto read = ParseCalibration(fit->calibration.source.dump(2), "cal.json");
-    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->input, "counts");
     EXPECT_EQ(read->angle_unit, "deg");
     EXPECT_EQ(read->coefficients, fit->calibration.coefficients);

@@ -23,7 +23,7 @@ std::string FaultOf(const std::string& text) {
   EXPECT_FALSE(table.has_value()) << text;
   if (table) return "";
   EXPECT_EQ(table.error().code, StatusCode::kDataLoss);
-  return table.error().message;
+  return table.error().message();
 }
 
 void ExpectReadings(const std::string& text, const std::string& input, const std::string& angle_unit) {
@@ -154,14 +154,14 @@ TEST(ParseCalibrationTable, RefusesAnglesThatGoBack) {
 TEST(MakeCalibrationTable, RefusesNonFiniteNumbers) {
   const auto made = MakeCalibrationTable(TableOf("counts", "deg", {1, 2}, {0, std::nan("")}));
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().message, "table.csv: readings and angles must be finite");
+  EXPECT_EQ(made.error().message(), "table.csv: readings and angles must be finite");
 }
 
 TEST(ReadCalibrationTable, NamesAMissingFile) {
   const auto table = ReadCalibrationTable("none/table.csv");
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(table.error().message, "none/table.csv: there is no such file; check the path");
+  EXPECT_EQ(table.error().message(), "none/table.csv: there is no such file; check the path");
 }
 
 }  // namespace

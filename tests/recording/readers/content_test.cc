@@ -58,7 +58,7 @@ Recording ReadFileOf(const std::string& bytes) {
   const std::string path = testing::TempDir() + "/content_test";
   std::ofstream(path, std::ios::binary) << bytes;
   const Result<Recording> recording = ReadRecording(path);
-  EXPECT_TRUE(recording.has_value()) << (recording ? "" : recording.error().message);
+  EXPECT_TRUE(recording.has_value()) << (recording ? "" : recording.error().message());
   std::filesystem::remove(path);
   if (recording) {
     EXPECT_EQ(recording->path, path);
@@ -81,7 +81,7 @@ TEST(Content, DetectsALargeForeignFileFromItsFirstBytes) {
   const Result<Recording> recording = ReadRecording(path);
   std::filesystem::remove(path);
   ASSERT_FALSE(recording.has_value());
-  EXPECT_EQ(recording.error().message,
+  EXPECT_EQ(recording.error().message(),
             path + ": this is a ROS bag; export the topic as CSV (rostopic echo -p) and give the CSV file");
 }
 

@@ -38,7 +38,7 @@ class ReadDataListTest : public testing::Test {
 
 TEST_F(ReadDataListTest, ResolvesPathsAgainstTheListsFolder) {
   const auto files = Read("# runs\r\n\n  a.csv \r\nruns/b c.csv\n" + (folder_ / "runs" / ".." / "list.txt").string());
-  ASSERT_TRUE(files.has_value()) << files.error().message;
+  ASSERT_TRUE(files.has_value()) << files.error().message();
   ASSERT_EQ(files->size(), 3);
   EXPECT_EQ((*files)[0].path, folder_ / "a.csv");
   EXPECT_EQ((*files)[0].place, list_.string() + ":3");
@@ -49,28 +49,29 @@ TEST_F(ReadDataListTest, ResolvesPathsAgainstTheListsFolder) {
 TEST_F(ReadDataListTest, NamesTheLineOfAMissingFile) {
   const Status fault = FaultOf("a.csv\nnowhere.csv\n");
   EXPECT_EQ(fault.code, StatusCode::kNotFound);
-  EXPECT_EQ(fault.message, list_.string() + ":2: there is no file " + (folder_ / "nowhere.csv").string() +
-                               "; paths are relative to the folder of the list");
+  EXPECT_EQ(fault.message(), list_.string() + ":2: there is no file " + (folder_ / "nowhere.csv").string() +
+                                 "; paths are relative to the folder of the list");
 }
 
 TEST_F(ReadDataListTest, RefusesDirectoriesAndRepeatedFiles) {
   EXPECT_EQ(FaultOf("runs\n").code, StatusCode::kDataLoss);
-  EXPECT_EQ(FaultOf("runs\n").message,
+  EXPECT_EQ(FaultOf("runs\n").message(),
             list_.string() + ":1: " + (folder_ / "runs").string() + " is a directory; name a CSV file in it");
-  EXPECT_EQ(FaultOf("a.csv\n\nruns/../a.csv\n").message, list_.string() +
-                                                             ":3: " + (folder_ / "runs" / ".." / "a.csv").string() +
-                                                             " is also at " + list_.string() + ":1; keep one of them");
+  EXPECT_EQ(FaultOf("a.csv\n\nruns/../a.csv\n").message(),
+            list_.string() + ":3: " + (folder_ / "runs" / ".." / "a.csv").string() + " is also at " + list_.string() +
+                ":1; keep one of them");
 }
 
 TEST_F(ReadDataListTest, RefusesAnEmptyList) {
   EXPECT_EQ(FaultOf("# none\n").code, StatusCode::kFailedPrecondition);
-  EXPECT_EQ(FaultOf("# none\n").message, list_.string() + ": the list names no file; give one path per line");
+  EXPECT_EQ(FaultOf("# none\n").message(), list_.string() + ": the list names no file; give one path per line");
 }
 
 TEST_F(ReadDataListTest, RefusesAFileThatIsNotAList) {
   EXPECT_EQ(FaultOf(std::string("a\0b", 3)).code, StatusCode::kDataLoss);
   EXPECT_EQ(ReadDataList(folder_ / "none.txt").error().code, StatusCode::kNotFound);
-  EXPECT_EQ(ReadDataList(folder_).error().message, folder_.string() + ": this is a directory; name a list file in it");
+  EXPECT_EQ(ReadDataList(folder_).error().message(),
+            folder_.string() + ": this is a directory; name a list file in it");
 }
 
 }  // namespace

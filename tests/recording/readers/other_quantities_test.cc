@@ -18,7 +18,7 @@ const std::string kRows = "0,0\n1,1\n2,0\n3,-1\n4,0\n5,1\n6,0\n7,-1\n";
 
 Recording Of(const std::string& text) {
   const Result<Recording> recording = ParseRecording(text, "run.csv");
-  EXPECT_TRUE(recording) << text << (recording ? "" : recording.error().message);
+  EXPECT_TRUE(recording) << text << (recording ? "" : recording.error().message());
   return recording.value_or(Recording());
 }
 
@@ -86,11 +86,11 @@ TEST(ParseRecording, ComputesAnglesFromBothCoordinates) {
   const auto height = ParseRecording(text, "run.csv", y_alone);
   ASSERT_FALSE(height);
   EXPECT_EQ(height.error().code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(height.error().message, HasSubstr("is the same on both sides"));
+  EXPECT_THAT(height.error().message(), HasSubstr("is the same on both sides"));
   const auto alone = ParseRecording("time_s,y_px\n" + kRows, "run.csv");
   ASSERT_FALSE(alone);
   EXPECT_EQ(alone.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(alone.error().message, HasSubstr("is the same on both sides"));
+  EXPECT_THAT(alone.error().message(), HasSubstr("is the same on both sides"));
 }
 
 TEST(ParseRecording, RemovesATruncatedLastValue) {

@@ -36,7 +36,7 @@ const std::string kHeader = "time_s,angle_rad\n";
 
 Recording RecordingOf(const std::string& text) {
   const Result<Recording> recording = ParseRecording(text, "run.csv");
-  EXPECT_TRUE(recording.has_value()) << text << (recording ? "" : recording.error().message);
+  EXPECT_TRUE(recording.has_value()) << text << (recording ? "" : recording.error().message());
   return recording.value_or(Recording());
 }
 
@@ -57,8 +57,8 @@ Status ErrorOf(const std::string& text) {
 /// The message of an error; expects the code kDataLoss.
 std::string FaultOf(const std::string& text) {
   const Status error = ErrorOf(text);
-  EXPECT_EQ(error.code, StatusCode::kDataLoss) << error.message;
-  return error.message;
+  EXPECT_EQ(error.code, StatusCode::kDataLoss) << error.message();
+  return error.message();
 }
 
 /// The message if the eighth row (line 9) is `row`.
@@ -206,7 +206,7 @@ TEST(ParseRecording, RefusesMalformedMetadataAtItsPosition) {
 
 TEST(ParseRecording, RefusesAHeaderWithoutTime) {
   const Status error = ErrorOf("angle_rad,rate\n1,0\n0,2\n1,1\n0,3\n1,1\n0,2\n1,1\n0,2\n");
-  EXPECT_EQ(error.message,
+  EXPECT_EQ(error.message(),
             "run.csv:1:1: none of the columns \"angle_rad\", \"rate\" is a time: give the rate of the rows in "
             "Hz with --sample_rate_hz, or the column with --time_column");
   EXPECT_THAT(error.try_flags, testing::IsEmpty());  // No example is right.
@@ -226,7 +226,7 @@ TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {
     rows += std::to_string(0.01 * i) + "," + number(0) + "," + number(1) + "\n";
   }
   const Status error = ErrorOf("time_s,upper_deg,lower_deg\n" + rows);
-  EXPECT_THAT(error.message, HasSubstr("no single column carries the swing: \"upper_deg\" 5"));
+  EXPECT_THAT(error.message(), HasSubstr("no single column carries the swing: \"upper_deg\" 5"));
   EXPECT_THAT(error.try_flags, testing::ElementsAre("--value_column upper_deg"));
   // Of several quantities the angle is preferred.
   const Recording recording = RecordingOf("time_s,gyro_rad_s,angle_rad\n" + rows);
@@ -237,7 +237,7 @@ TEST(ParseRecording, RefusesTwoCandidatesAndNamesBoth) {
 
 TEST(ParseRecording, AsksForTheUnitIfTheFirstRowHasNumbers) {
   const Status error = ErrorOf(Rows());
-  EXPECT_THAT(error.message, StartsWith("run.csv:1:1: column 2 does not give its unit"));
+  EXPECT_THAT(error.message(), StartsWith("run.csv:1:1: column 2 does not give its unit"));
   EXPECT_THAT(error.try_flags, testing::ElementsAre("--unit counts"));
 }
 
@@ -285,7 +285,7 @@ TEST(ParseRecording, ShortensAndEscapesShownText) {
   const std::string fault = FaultOfRow("3.5," + std::string(1000000, 'x'));
   EXPECT_THAT(fault, HasSubstr("\"" + std::string(40, 'x') + "...\""));
   EXPECT_LT(fault.size(), 200);
-  EXPECT_LT(ErrorOf(std::string(1000000, ',') + "x\n").message.size(), 200);
+  EXPECT_LT(ErrorOf(std::string(1000000, ',') + "x\n").message().size(), 200);
 }
 
 TEST(ParseRecording, RefusesNulBytesAtTheirPosition) {
@@ -301,7 +301,7 @@ TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
             std::string("# a\n\n# b: c\n"),
             "run.csv:3:1: the file holds only comments and blank lines; a header and at least 8 rows are needed"}}) {
     EXPECT_EQ(ErrorOf(text).code, StatusCode::kFailedPrecondition);
-    EXPECT_EQ(ErrorOf(text).message, message);
+    EXPECT_EQ(ErrorOf(text).message(), message);
   }
 }
 
@@ -309,13 +309,13 @@ TEST(ParseRecording, ReportsTheNumberOfRowsAndTheMinimum) {
 TEST(ParseRecording, SaysThatTheFirstLineIsTooLong) {
   std::string header = "t_s,theta_deg";
   while (header.size() < 100000) header += ",note_" + std::to_string(header.size());
-  EXPECT_THAT(ErrorOf(header + "\n" + Rows()).message,
+  EXPECT_THAT(ErrorOf(header + "\n" + Rows()).message(),
               StartsWith("run.csv:1:1: the first line is longer than 64 kB and begins with \"t_s,theta_deg,note"));
-  EXPECT_THAT(ErrorOf("# " + std::string(70000, 'a') + "\n" + kHeader + Rows()).message,
+  EXPECT_THAT(ErrorOf("# " + std::string(70000, 'a') + "\n" + kHeader + Rows()).message(),
               StartsWith("run.csv:1:1: the first line is longer than 64 kB and begins with \"# aaa"));
   std::string above;
   while (above.size() < 70000) above += "# a comment in a line of its own\n";
-  EXPECT_EQ(ErrorOf(above + kHeader + Rows()).message,
+  EXPECT_EQ(ErrorOf(above + kHeader + Rows()).message(),
             "run.csv: no row of data begins in the first 64 kB: shorten the text above the table");
 }
 
@@ -345,8 +345,8 @@ void ExpectAValidRecordingOrAMessage(const std::string& text) {
   if (recording) {
     EXPECT_TRUE(MakeRecording(*recording).has_value());
   } else {
-    EXPECT_THAT(recording.error().message, testing::MatchesRegex("fuzz\\.csv:( |[0-9]+:).+"));
-    EXPECT_LT(recording.error().message.size(), 1000);
+    EXPECT_THAT(recording.error().message(), testing::MatchesRegex("fuzz\\.csv:( |[0-9]+:).+"));
+    EXPECT_LT(recording.error().message().size(), 1000);
   }
 }
 
@@ -372,7 +372,7 @@ TEST(ReadRecording, ReadsTheBytesOfAFile) {
   std::ofstream(path, std::ios::binary) << kHeader << Rows();
   const Result<Recording> recording = ReadRecording(path);
   std::filesystem::remove(path);
-  ASSERT_TRUE(recording.has_value()) << recording.error().message;
+  ASSERT_TRUE(recording.has_value()) << recording.error().message();
   EXPECT_EQ(recording->path, path.string());
   EXPECT_EQ(recording->sha256, RecordingOf(kHeader + Rows()).sha256);
   EXPECT_EQ(recording->value, RecordingOf(kHeader + Rows()).value);
@@ -382,14 +382,14 @@ TEST(ReadRecording, ReportsAMissingFile) {
   const Result<Recording> recording = ReadRecording("/nowhere/run.csv");
   ASSERT_FALSE(recording.has_value());
   EXPECT_EQ(recording.error().code, StatusCode::kNotFound);
-  EXPECT_EQ(recording.error().message, "/nowhere/run.csv: there is no such file; check the path");
+  EXPECT_EQ(recording.error().message(), "/nowhere/run.csv: there is no such file; check the path");
 }
 
 TEST(ReadRecording, RefusesADirectory) {
   const Result<Recording> recording = ReadRecording(testing::TempDir());
   ASSERT_FALSE(recording.has_value());
   EXPECT_EQ(recording.error().code, StatusCode::kDataLoss);
-  EXPECT_THAT(recording.error().message, HasSubstr("this is a directory"));
+  EXPECT_THAT(recording.error().message(), HasSubstr("this is a directory"));
 }
 
 /// Numbers of samples as in src/docs/examples.md.
@@ -402,7 +402,7 @@ TEST(ReadRecording, ReadsTheSampleRecordings) {
   EXPECT_EQ(ReadRecording(path / "sonyneto_0312.csv")->unit, "deg");
   EXPECT_EQ(ReadRecording(path / "yfysiks_data2_25.csv")->size(), 36831);
   const Result<Recording> gyro = ReadRecording(path / "ganesh_gyro.csv");
-  ASSERT_TRUE(gyro.has_value()) << gyro.error().message;
+  ASSERT_TRUE(gyro.has_value()) << gyro.error().message();
   EXPECT_EQ(gyro->size(), 17999 - 10 - 2 - 1);  // 10 duplicate rows, 2 with a shared stamp, 1 that goes back
   EXPECT_FALSE(ReadRecording(path / "cubli_PRINT_00.csv")->is_calibrated());
 }

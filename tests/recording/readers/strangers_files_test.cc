@@ -465,7 +465,7 @@ ReadOptions WithFlags(ReadOptions options, const std::vector<std::string>& flags
 /// The flags of a refusal, with a rate if it asks for one, of which it cannot give an example.
 std::vector<std::string> AnswersTo(const Status& refusal) {
   std::vector<std::string> flags = refusal.try_flags;
-  if (refusal.message.find("give the rate of the rows") != std::string::npos) flags.push_back("--sample_rate_hz 100");
+  if (refusal.sentence.find("give the rate of the rows") != std::string::npos) flags.push_back("--sample_rate_hz 100");
   return flags;
 }
 
@@ -501,8 +501,8 @@ TEST(StrangersFiles, AreReadWithoutFlagsOrSayWhichFlagsWork) {
     useless += helps ? 0 : 1;
     std::string flags;
     for (const std::string& flag : status.try_flags) flags += " " + flag;
-    std::printf("file %d is refused:\n%s%s; try%s%s%s\n", i, file.description.c_str(), status.message.c_str(),
-                flags.c_str(), helps ? "" : ", which does not work: ", again ? "" : again.error().message.c_str());
+    std::printf("file %d is refused:\n%s%s; try%s%s%s\n", i, file.description.c_str(), status.message().c_str(),
+                flags.c_str(), helps ? "" : ", which does not work: ", again ? "" : again.error().message().c_str());
   }
   std::printf("%d of %d files are read, %d wrongly with a warning\n", read, kFiles, warned);
   EXPECT_EQ(wrong, 0);
@@ -519,8 +519,8 @@ TEST(StrangersFiles, ThatAreAmbiguousAreRefusedWithFlagsThatWork) {
     const Result<Recording> recording = ParseRecording(text, "run.csv");
     ASSERT_FALSE(recording) << text.substr(0, 200);
     const Result<Recording> again = ParseRecording(text, "run.csv", WithFlags({}, AnswersTo(recording.error())));
-    EXPECT_TRUE(again) << text.substr(0, 200) << recording.error().message << "\n"
-                       << (again ? "" : again.error().message);
+    EXPECT_TRUE(again) << text.substr(0, 200) << recording.error().message() << "\n"
+                       << (again ? "" : again.error().message());
   }
 }
 

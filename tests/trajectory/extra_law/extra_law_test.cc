@@ -16,7 +16,7 @@ namespace {
 
 TEST(ExtraLaw, IsAModelWithItsParameters) {
   const Result<MotionModel> model = FindMotionModel("wind");
-  ASSERT_TRUE(model) << model.error().message;
+  ASSERT_TRUE(model) << model.error().message();
   std::vector<std::string> names;
   for (const ParameterInfo& parameter : PhysicalParameters(*model)) names.emplace_back(parameter.name);
   EXPECT_THAT(names, testing::ElementsAre("inertia", "viscous", "drag"));
@@ -35,7 +35,7 @@ TEST(ExtraLaw, IsSimulatedWithoutDryFriction) {
   run.sample_rate = 1000;
   run.duration = 20;
   const Result<Recording> recording = SimulateRecording(run);
-  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording) << recording.error().message();
   const double period = 2 * 3.14159265358979 * std::sqrt(inertia);
   const double swings = 10 / period;  // until the middle of the samples that follow
   const double expected = amplitude / (1 + swings * 8.0 / 3 * drag / inertia * amplitude);

@@ -59,9 +59,10 @@ struct Line {
   /// An error at byte `at` of the text.
   tl::unexpected<Status> Fault(const char* at, const std::string& sentence,
                                StatusCode code = StatusCode::kDataLoss) const {
-    if (number == kNoNumber) return Error(code, std::string(file) + ": " + sentence);
-    return Error(code, std::string(file) + ":" + std::to_string(std::max<std::size_t>(number, 1)) + ":" +
-                           std::to_string(at - text.data() + 1) + ": " + sentence);
+    std::string place(file);
+    if (number != kNoNumber)
+      place += ":" + std::to_string(std::max<std::size_t>(number, 1)) + ":" + std::to_string(at - text.data() + 1);
+    return ErrorAt(code, std::move(place), sentence);
   }
 };
 

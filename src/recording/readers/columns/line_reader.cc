@@ -93,16 +93,15 @@ Result<void> LineReader::HashAndCheck(std::string_view bytes) {
   if (nul == nullptr) return {};
   const std::string_view before(at_, nul);
   const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0: the line that starts at at_.
-  return Error(StatusCode::kDataLoss,
-               name_ + ":" + std::to_string(number_ + 1 + std::ranges::count(before, '\n')) + ":" +
-                   std::to_string(before.size() - line_begin + 1) +
-                   ": there is a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8");
+  return Fault(name_ + ":" + std::to_string(number_ + 1 + std::ranges::count(before, '\n')) + ":" +
+                   std::to_string(before.size() - line_begin + 1),
+               "there is a NUL byte, so this is not CSV text; delete the damaged part, or save UTF-16 as UTF-8");
 }
 
 tl::unexpected<Status> LineReader::TooLongError() const {
-  return Error(StatusCode::kDataLoss, name_ + ":" + std::to_string(number_ + 1) +
-                                          ":1: this line is longer than 1 MiB and begins with " + Quoted({at_, end_}) +
-                                          ", so this is not CSV text; name a CSV file");
+  return Fault(name_ + ":" + std::to_string(number_ + 1) + ":1", "this line is longer than 1 MiB and begins with " +
+                                                                     Quoted({at_, end_}) +
+                                                                     ", so this is not CSV text; name a CSV file");
 }
 
 /// Takes the next line if it is completely in memory.

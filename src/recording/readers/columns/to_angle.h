@@ -192,7 +192,7 @@ inline Result<void> TurnIntoAngles(const Column& vertical, const Eigen::VectorXd
   const Unit& unit = *vertical.unit;
   const Eigen::VectorXd height = y.unaryExpr([&](double number) { return unit.ToSi(number); });
   Result<Arc> arc = FitArc(recording.value, height);
-  if (!arc) return WithMessage(arc.error(), recording.path + ": " + arc.error().message);
+  if (!arc) return Within(recording.path, arc.error());
   for (Eigen::Index i = 0; i < height.size(); ++i) recording.value[i] = arc->Angle(recording.value[i], height[i]);
   recording.quantity = Quantity::kAngle;
   recording.resolution = 0;  // levels of coordinates are not levels of the angle

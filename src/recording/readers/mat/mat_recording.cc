@@ -140,7 +140,7 @@ tl::unexpected<Status> NoTable(ChildFailure failure, const ChildLimits& limits, 
       return Fault(name, "this MAT-file unpacks to more than " + std::to_string(limits.answer_bytes) +
                              " bytes, too many for a recording" + less);
   }
-  return Error(StatusCode::kTryAgain, name + ": the process that reads it could not be started; try again");
+  return ErrorAt(StatusCode::kTryAgain, name, "the process that reads it could not be started; try again");
 }
 
 Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, const ReadOptions& options) {
@@ -148,9 +148,10 @@ Result<MatTable> ReadTable(std::string_view bytes, const std::string& name, cons
   const TemporaryFile file(bytes);
   if (file.error() != 0) {
     const std::string folder = std::filesystem::path(file.path()).parent_path().string();
-    return Error(StatusCode::kTryAgain, name + ": cannot copy this MAT-file to " + Quoted(folder) + " (" +
-                                            std::generic_category().message(file.error()) +
-                                            "); free space there, or name another folder in TMPDIR");
+    return ErrorAt(StatusCode::kTryAgain, name,
+                   "cannot copy this MAT-file to " + Quoted(folder) + " (" +
+                       std::generic_category().message(file.error()) +
+                       "); free space there, or name another folder in TMPDIR");
   }
   const ChildLimits limits = LimitsFor(bytes.size(), options.most_unpacked_bytes);
   const auto packed = RunInChildProcess([&] { return Pack(ReadMatTable(file.path(), bytes)); }, limits);
@@ -278,9 +279,9 @@ Result<RawSamples> SamplesOf(const MatTable& table, const csv::Layout& layout, c
   samples.left_out = left_out;
   if (left_out > 0) samples.warnings.push_back(csv::EmptyCells(name, left_out, layout.value.name));
   if (rows >= kMinimumSamples) return samples;
-  return Error(StatusCode::kFailedPrecondition, name + ": column " + layout.value.name + " has " +
-                                                    std::to_string(rows) + " numbers; at least " +
-                                                    std::to_string(kMinimumSamples) + " are needed: record for longer");
+  return ErrorAt(StatusCode::kFailedPrecondition, name,
+                 "column " + layout.value.name + " has " + std::to_string(rows) + " numbers; at least " +
+                     std::to_string(kMinimumSamples) + " are needed: record for longer");
 }
 
 /// The numbers of the table, as far as they are needed to choose columns. Shorter columns end in NaN.

@@ -161,8 +161,9 @@ Result<std::string> TableOfLabelledRows(std::string_view text, const std::string
     if (is_row && !std::exchange(has_header, true)) table.append(stamp).append(header).append("\n");
     const bool has_labels = std::ranges::equal(row, typical, {}, &LabelledValue::label, &LabelledValue::label);
     if (!is_row && !row.empty() && has_labels && !error) {
-      error = Status{StatusCode::kDataLoss, name + ":" + std::to_string(number) + ": the units of " + Quoted(rest) +
-                                                " are not those of the other rows; give all rows one unit"};
+      error = Fault(name + ":" + std::to_string(number),
+                    "the units of " + Quoted(rest) + " are not those of the other rows; give all rows one unit")
+                  .value();
     }
     table.append(stamp).append(is_row ? ValuesOf(row) : rest).append("\n");
   });

@@ -766,10 +766,9 @@ Check Reader::CheckUnpairedRows() {
                            " rows have only one of time and reading: if some were lost before "
                            "them, the times after that are wrong";
   if (are_lists_) {
-    return tl::unexpected(
-        Status{StatusCode::kDataLoss, file + ": " + lost +
-                                          "; look for the missing ones at their "
-                                          "source, or shorten the longer list if the others are complete"});
+    return Fault(file, lost +
+                           "; look for the missing ones at their "
+                           "source, or shorten the longer list if the others are complete");
   }
   samples_.warnings.push_back(
       {.code = "unequal_columns", .finding = lost, .explanation = "these rows were left out", .about = {.file = file}});

@@ -153,7 +153,7 @@ TEST(ChooseColumns, AsksIfTwoColumnsSwingOnTheirOwn) {
   }
   const Result<Recording> recording = ParseRecording(text, "run.csv");
   ASSERT_FALSE(recording);
-  EXPECT_THAT(recording.error().message, HasSubstr("no single column carries the swing: \"lower_deg\" 53"));
+  EXPECT_THAT(recording.error().message(), HasSubstr("no single column carries the swing: \"lower_deg\" 53"));
   EXPECT_THAT(recording.error().try_flags, ElementsAre("--value_column lower_deg"));
 }
 
@@ -201,7 +201,7 @@ TEST(ChooseColumns, AUnitInANameIsBelieved) {
 std::string Refusal(const std::string& text) {
   const Result<Recording> recording = ParseRecording(text, "run.csv");
   EXPECT_FALSE(recording);
-  return recording ? "" : recording.error().message;
+  return recording ? "" : recording.error().message();
 }
 
 /// A swing in degrees, with a time that grows by `step` in each row.

@@ -37,7 +37,7 @@ std::vector<std::string> LinesOf(LineReader reader) {
   std::vector<std::string> lines;
   while (true) {
     const Result<bool> next = reader.Next();
-    EXPECT_TRUE(next.has_value()) << (next ? "" : next.error().message);
+    EXPECT_TRUE(next.has_value()) << (next ? "" : next.error().message());
     if (!next || !*next) return lines;
     lines.emplace_back(reader.line());
     EXPECT_EQ(reader.number(), lines.size());
@@ -47,7 +47,7 @@ std::vector<std::string> LinesOf(LineReader reader) {
 std::string FaultOf(LineReader reader) {
   while (true) {
     const Result<bool> next = reader.Next();
-    if (!next) return next.error().message;
+    if (!next) return next.error().message();
     if (!*next) return "no fault";
   }
 }

@@ -75,7 +75,7 @@ TEST(OpenHdf5, GivesTheSameNumbersOrAnErrorAfterAChangedByte) {
     bytes[at] = static_cast<char>(bytes[at] ^ 0xFF);
     const Result<Recording> recording = ParseRecording(bytes, "run.csv");
     if (!recording) {
-      EXPECT_THAT(recording.error().message, testing::StartsWith("run.csv:"));
+      EXPECT_THAT(recording.error().message(), testing::StartsWith("run.csv:"));
       continue;
     }
     ++numbers;

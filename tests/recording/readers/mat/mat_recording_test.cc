@@ -105,7 +105,7 @@ TEST_P(OfEveryVersion, NeverReadsATruncatedFile) {
     const Result<Recording> recording = ParseRecording(whole.substr(0, size), "run.csv");
     ASSERT_FALSE(recording.has_value()) << size;
     EXPECT_EQ(recording.error().code, StatusCode::kDataLoss);
-    EXPECT_THAT(recording.error().message, StartsWith("run.csv:"));
+    EXPECT_THAT(recording.error().message(), StartsWith("run.csv:"));
   }
 }
 
@@ -321,7 +321,7 @@ TEST(ReadMat, AcceptsChangedBytesWithoutACrash) {
       bytes[at] = static_cast<char>(bytes[at] ^ 0xFF);
       const Result<Recording> recording = ParseRecording(bytes, "run.csv");
       if (recording) continue;
-      EXPECT_THAT(recording.error().message, StartsWith("run.csv:"));
+      EXPECT_THAT(recording.error().message(), StartsWith("run.csv:"));
       EXPECT_NE(recording.error().code, StatusCode::kInternal);
     }
   }

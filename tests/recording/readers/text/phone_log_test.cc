@@ -31,7 +31,7 @@ std::string Log(const std::string& axes = "z,y,x") {
 
 Recording Read(const std::string& name, const ReadOptions& options = {}) {
   const Result<Recording> recording = ParseRecording(Log(), name, options);
-  EXPECT_TRUE(recording.has_value()) << name << (recording ? "" : recording.error().message);
+  EXPECT_TRUE(recording.has_value()) << name << (recording ? "" : recording.error().message());
   return recording.value_or(Recording());
 }
 
@@ -55,7 +55,7 @@ TEST(PhoneLog, KnowsWhichAccelerationContainsGravity) {
 TEST(PhoneLog, AsksForTheUnitOfAnotherNameAndThenCombinesTheAxes) {
   const auto refused = ParseRecording(Log(), "run.csv");
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("x, y and z may be rates, accelerations or coordinates"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("x, y and z may be rates, accelerations or coordinates"));
   EXPECT_THAT(refused.error().try_flags, testing::ElementsAre("--unit rad_s"));
   ExpectRates(Read("run.csv", Unit("rad_s")));
   ExpectRates(Read("run.csv", TimeAndValue("", "combined", "rad_s")));
