@@ -16,6 +16,7 @@
 #include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
+#include "pendulum/report/estimate_texts.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/sections_json.h"
@@ -225,9 +226,10 @@ HttpResponse ListFits(ServiceState& state, const Call& call) {
 }
 
 HttpResponse GetFit(ServiceState& state, const Call& call) {
-  const auto kept = state.store->Find(call.id);
+  auto kept = state.store->Find(call.id);
   if (!kept) return ProblemAnswer(kept.error());
   if (auto without = WithoutResult(*kept)) return *std::move(without);
+  AddTextsOfParameters(kept->result);  // results of earlier versions have none
   return JsonAnswer(kept->result);
 }
 
