@@ -96,11 +96,6 @@ std::string Join(const std::string& first, const std::string& second, const std:
   return first.empty() || second.empty() ? first + second : first + between + second;
 }
 
-std::string EstimateText(double value, double error) {
-  const ValueAndError text = PdgText(value, error);
-  return text.value + " ± " + text.error;
-}
-
 /// Names the parameter that differs most between the halves.
 std::string DescribeHalves(const Constancy& result) {
   const auto row =
@@ -108,8 +103,8 @@ std::string DescribeHalves(const Constancy& result) {
   const bool alone = TwoSidedP(row->z) < kNotConstant;
   const std::string what =
       alone ? row->name + " differs" : "inertia and friction together differ, most of all " + row->name + ",";
-  return what + " between the halves: " + EstimateText(row->first, row->first_std_error) + " then " +
-         EstimateText(row->second, row->second_std_error) + (row->unit == "1" ? "" : " " + row->unit) + " (p " +
+  return what + " between the halves: " + PlusMinusText(row->first, row->first_std_error) + " then " +
+         PlusMinusText(row->second, row->second_std_error) + (row->unit == "1" ? "" : " " + row->unit) + " (p " +
          ProbabilityText(*result.halves_p) + ")";
 }
 

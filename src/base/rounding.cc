@@ -118,6 +118,13 @@ ValueAndError PdgText(double value, double error) {
   return {"(" + Mantissa(value, rounding), Mantissa(rounded.error, rounding) + ")" + exponent};
 }
 
+std::string PlusMinusText(double value, double error) {
+  constexpr int kDigits = 6;
+  if (!(error > 0)) return NumberText(value, kDigits);
+  const ValueAndError text = PdgText(value, error);
+  return text.value + " ± " + text.error;
+}
+
 std::string RoundedText(double x, const Rounding& rounding) {
   if (IsPlain(rounding)) {
     const double unit = std::pow(10.0, rounding.exponent - rounding.decimals);

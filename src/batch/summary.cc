@@ -154,10 +154,8 @@ std::vector<TrendSummary::Point> PointsOf(const QuantityRuns& runs, const Contex
   return points;
 }
 
-std::string TrendText(const Trend& trend, const std::string& unit, const std::string& per) {
+std::string TrendText(const Trend& trend, const std::string& slope) {
   constexpr double kLevel = 0.01;
-  const ValueAndError text = PdgText(trend.slope, trend.std_error);
-  const std::string slope = text.value + " ± " + text.error + Spaced(unit) + " " + per;
   return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
 }
 
@@ -167,7 +165,8 @@ std::optional<TrendSummary> TrendOf(const QuantityRuns& runs, const Context& con
   if (!trend) return std::nullopt;
   const std::string column = context.trend_by.empty() ? "position" : context.trend_by;
   const std::string per = runs.dates ? "per day" : context.trend_by.empty() ? "per run" : "per unit of " + column;
-  return TrendSummary{*trend, column, runs.dates, TrendText(*trend, unit, per), PointsOf(runs, context)};
+  const std::string slope = PlusMinusText(trend->slope, trend->std_error) + Spaced(unit) + " " + per;
+  return TrendSummary{*trend, column, runs.dates, slope, TrendText(*trend, slope), PointsOf(runs, context)};
 }
 
 /// The median of those that are finite.

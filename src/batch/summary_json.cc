@@ -8,7 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "pendulum/base/format.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/base/version.h"
+#include "pendulum/batch/quantity_text.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -105,6 +108,21 @@ Json FailureJson(const FailureCount& failure) {
           {"fits", failure.fits},     {"models", failure.laws},         {"examples", failure.examples}};
 }
 
+/// The numbers of a distribution as texts, under the same keys.
+Json DistributionTexts(const QuantitySummary& quantity) {
+  const Distribution& distribution = quantity.distribution;
+  const auto text = [&](double value) { return ValueText(distribution, value); };
+  return {{"median", text(distribution.median)},
+          {"mean", text(distribution.mean)},
+          {"std_dev", quantity.runs == 1 ? "-" : SpreadText(distribution.std_dev)},
+          {"minimum", text(distribution.minimum)},
+          {"maximum", text(distribution.maximum)},
+          {"lower_quartile", text(distribution.lower_quartile)},
+          {"upper_quartile", text(distribution.upper_quartile)},
+          {"median_std_error", SpreadText(quantity.median_std_error)},
+          {"median_repeat_error", SpreadText(quantity.median_repeat_error)}};
+}
+
 Json DistributionJson(const QuantitySummary& quantity) {
   const Distribution& distribution = quantity.distribution;
   return {{"model", quantity.law},
@@ -121,6 +139,7 @@ Json DistributionJson(const QuantitySummary& quantity) {
           {"upper_quartile", distribution.upper_quartile},
           {"median_std_error", NumberOrNull(quantity.median_std_error)},
           {"median_repeat_error", NumberOrNull(quantity.median_repeat_error)},
+          {"texts", DistributionTexts(quantity)},
           {"histogram",
            {{"from", distribution.from},
             {"to", distribution.to},
@@ -131,6 +150,7 @@ Json DistributionJson(const QuantitySummary& quantity) {
 
 Json RepeatabilityJson(const QuantitySummary& quantity) {
   if (!quantity.repeatability) return nullptr;
+  constexpr int kChi2Digits = 5;
   constexpr std::array<const char*, 3> kVerdicts = {"agrees", "scatter_larger", "scatter_smaller"};
   const Repeatability& all = *quantity.repeatability;
   Json rows = Json::array();
@@ -146,18 +166,29 @@ Json RepeatabilityJson(const QuantitySummary& quantity) {
                     {"scatter_ratio", group.ScatterRatio()},
                     {"scatter_interval95", IntervalJson(least, most)},
                     {"p", group.P()},
-                    {"disagrees", all.Disagrees(group)}});
+                    {"disagrees", all.Disagrees(group)},
+                    {"texts",
+                     {{"weighted_mean", PlusMinusText(group.mean, group.std_error)},
+                      {"scatter_ratio", RatioText(group.ScatterRatio())},
+                      {"scatter_interval95", RatioText(least) + " to " + RatioText(most)},
+                      {"p", ProbabilityText(group.P())}}}});
   }
+  const double p = std::min(all.lower_p, all.upper_p);
   return {{"groups", all.groups.size()},
           {"runs", all.runs},
           {"dof", all.dof},
           {"chi2", all.chi2},
           {"scatter_ratio", all.ScatterRatio()},
-          {"p", std::min(all.lower_p, all.upper_p)},
+          {"p", p},
           {"between_std_dev", all.between},
           {"verdict", kVerdicts.at(static_cast<std::size_t>(all.verdict))},
           {"has_enough_runs", all.HasEnoughRuns()},
           {"text", quantity.repeatability_text},
+          {"texts",
+           {{"chi2", NumberText(all.chi2, kChi2Digits)},
+            {"scatter_ratio", RatioText(all.ScatterRatio())},
+            {"p", ProbabilityText(p)},
+            {"between_std_dev", SpreadText(all.between)}}},
           {"rows", std::move(rows)}};
 }
 
@@ -166,6 +197,7 @@ Json OutlierJson(const OutlyingRun& run) {
           {"group", GroupJson(run.group)},
           {"estimate", run.estimate},
           {"std_error", NumberOrNull(run.std_error)},
+          {"text", PlusMinusText(run.estimate, run.std_error)},
           {"z", run.z}};
 }
 
@@ -176,6 +208,7 @@ Json TrendJson(const QuantitySummary& quantity) {
     return Json{{"x", point.x},
                 {"y", point.y},
                 {"std_error", NumberOrNull(point.std_error)},
+                {"text", PlusMinusText(point.y, point.std_error)},
                 {"id", point.id},
                 {"group", GroupJson(point.group)}};
   };
@@ -185,6 +218,7 @@ Json TrendJson(const QuantitySummary& quantity) {
           {"std_error", trend.trend.std_error},
           {"p", trend.trend.p},
           {"text", trend.text},
+          {"texts", {{"slope", trend.slope}, {"p", ProbabilityText(trend.trend.p)}}},
           {"points", ArrayOf(trend.points, point_json)},
           {"points_total", quantity.runs}};
 }

@@ -133,4 +133,17 @@ std::vector<ParameterInfo> PhysicalParameters(const MotionModel& model) {
   return parameters;
 }
 
+std::vector<ParameterInfo> AllParameters() {
+  std::vector<ParameterInfo> all;
+  const auto add = [&](const auto& parameters) {
+    for (const ParameterInfo& parameter : parameters) {
+      const bool is_known = std::ranges::find(all, parameter.name, &ParameterInfo::name) != all.end();
+      if (!is_known) all.push_back(parameter);
+    }
+  };
+  for (const MotionModel& model : MotionModels()) add(PhysicalParameters(model));
+  add(kParametersOfRecordings);
+  return all;
+}
+
 }  // namespace pendulum

@@ -60,16 +60,9 @@ std::string DataText(const CalibrationTable& table, const CalibrationFit& fit) {
 }
 
 std::string CoefficientsText(const CalibrationTable& table, const CalibrationFit& fit) {
-  const Calibration& calibration = fit.calibration;
-  const std::string reading_unit = table.input == "counts" ? "count" : "V";
-  const bool has_errors = calibration.covariance.size() > 0;
   std::vector<Row> rows;
-  for (int k = 0; k <= fit.order; ++k) {
-    const double value = calibration.coefficients[k];
-    ValueAndError text{NumberText(value, kTextDigits), ""};
-    if (has_errors && calibration.covariance(k, k) > 0) text = PdgText(value, std::sqrt(calibration.covariance(k, k)));
-    const std::string unit = table.angle_unit + (k == 0 ? "" : "/" + Power(k, reading_unit));
-    rows.push_back({"c" + std::to_string(k), text.value, text.error.empty() ? "" : "± " + text.error, unit});
+  for (const auto& [name, text, unit] : CoefficientTexts(table, fit)) {
+    rows.push_back({name, text.value, text.error.empty() ? "" : "± " + text.error, unit});
   }
   return "[[Coefficients]]\n" +
          AlignedTable({{"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}}, rows, kTextIndent);
@@ -221,6 +214,21 @@ std::string OutsideText(const CalibrationTable& table, const CalibrationFit& fit
 }
 
 }  // namespace
+
+std::vector<CoefficientText> CoefficientTexts(const CalibrationTable& table, const CalibrationFit& fit) {
+  const Calibration& calibration = fit.calibration;
+  const std::string reading_unit = table.input == "counts" ? "count" : "V";
+  const bool has_errors = calibration.covariance.size() > 0;
+  std::vector<CoefficientText> texts;
+  for (int k = 0; k <= fit.order; ++k) {
+    const double value = calibration.coefficients[k];
+    ValueAndError text{NumberText(value, kTextDigits), ""};
+    if (has_errors && calibration.covariance(k, k) > 0) text = PdgText(value, std::sqrt(calibration.covariance(k, k)));
+    const std::string unit = table.angle_unit + (k == 0 ? "" : "/" + Power(k, reading_unit));
+    texts.push_back({"c" + std::to_string(k), std::move(text), unit});
+  }
+  return texts;
+}
 
 std::string CalibrationText(const CalibrationTable& table, const CalibrationFit& fit, TextExtent extent) {
   if (extent == TextExtent::kSummary) {

@@ -12,6 +12,7 @@
 #include "pendulum/report/closed_form_json.h"
 #include "pendulum/report/comparison_json.h"
 #include "pendulum/report/equation.h"
+#include "pendulum/report/estimate_texts.h"
 #include "pendulum/report/homogeneity_json.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/result_summary.h"
@@ -48,17 +49,18 @@ Json ParameterJson(const ParameterEstimate& parameter) {
     object.AddReason("the interval is open: " + std::string(Sentence(parameter.open_interval)));
   }
   if (parameter.unseen_friction) object.Set("unseen_friction_std_error", *parameter.unseen_friction);
-  return object.Set("estimate", parameter.estimate)
-      .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
-      .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
-      .Set("systematic_std_error", NumberOrNull(parameter.systematic.Total()))
-      .Set("total_std_error", NumberOrNull(TotalStdError(parameter.std_error, parameter.systematic)))
-      .Set("total_interval95", TotalIntervalJson(parameter))
-      .Set("error_budget", ErrorBudgetJson(parameter.std_error, parameter.systematic))
-      .Set("unit", Json(parameter.unit))
-      .Set("fixed", Json(parameter.fixed))
-      .Set("at_bound", Json(parameter.at_bound))
-      .Done();
+  Json json = object.Set("estimate", parameter.estimate)
+                  .Set("std_error", parameter.std_error, parameter.reason.empty() ? "not estimated" : parameter.reason)
+                  .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
+                  .Set("systematic_std_error", NumberOrNull(parameter.systematic.Total()))
+                  .Set("total_std_error", NumberOrNull(TotalStdError(parameter.std_error, parameter.systematic)))
+                  .Set("error_budget", ErrorBudgetJson(parameter.std_error, parameter.systematic))
+                  .Set("unit", Json(parameter.unit))
+                  .Set("fixed", Json(parameter.fixed))
+                  .Set("at_bound", Json(parameter.at_bound))
+                  .Done();
+  AddTexts(json);
+  return json;
 }
 
 template <typename Element>

@@ -158,11 +158,8 @@ std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
   if (!rig || !rig->inertia || fitted == nullptr) return "";
   const double from_rig = rig->inertia->value;
   const double percent = 100 * (fitted->estimate / from_rig - 1);
-  const ValueAndError text = PdgText(from_rig, rig->inertia->std_dev);
-  const std::string value =
-      rig->inertia->std_dev > 0 ? text.value + " ± " + text.error : NumberText(from_rig, kTextDigits);
-  return "The rig file gives I_O = " + value + " kg m^2; the fitted I_O is " + NumberText(std::abs(percent), 2) +
-         " % " + (percent < 0 ? "smaller" : "larger") + ".";
+  return "The rig file gives I_O = " + PlusMinusText(from_rig, rig->inertia->std_dev) + " kg m^2; the fitted I_O is " +
+         NumberText(std::abs(percent), 2) + " % " + (percent < 0 ? "smaller" : "larger") + ".";
 }
 
 Table EstimateTable(const FitReport& fit) {

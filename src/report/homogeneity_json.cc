@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "pendulum/base/rounding.h"
 #include "pendulum/report/json_parts.h"
 
 namespace pendulum {
@@ -15,6 +16,7 @@ Json RandomEffectsJson(const RandomEffects& scatter) {
   return NumberObject()
       .Set("mean", scatter.mean)
       .Set("std_error", scatter.std_error)
+      .Set("text", Json(PlusMinusText(scatter.mean, scatter.std_error)))
       .Set("interval95", IntervalJson(scatter.lower95, scatter.upper95))
       .Set("between_std_dev", scatter.between)
       .Set("between_interval95", IntervalJson(scatter.between_lower95, scatter.between_upper95))
@@ -24,11 +26,13 @@ Json RandomEffectsJson(const RandomEffects& scatter) {
 Json SharedParameterJson(const SharedParameter& parameter) {
   Json recordings = Json::array();
   for (const RunEstimate& run : parameter.runs) {
-    recordings.push_back(NumberObject()
-                             .Set("estimate", run.value, "the recording on its own does not determine it")
-                             .Set("std_error", run.std_error, "the recording on its own does not determine it")
-                             .Set("z", run.z, "no other recording determines it")
-                             .Done());
+    recordings.push_back(
+        NumberObject()
+            .Set("estimate", run.value, "the recording on its own does not determine it")
+            .Set("std_error", run.std_error, "the recording on its own does not determine it")
+            .Set("text", run.value ? Json(PlusMinusText(*run.value, run.std_error.value_or(0))) : Json(nullptr))
+            .Set("z", run.z, "no other recording determines it")
+            .Done());
   }
   return NumberObject()
       .Set("unit", Json(parameter.unit))

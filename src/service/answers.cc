@@ -9,6 +9,7 @@
 
 #include "pendulum/base/json.h"
 #include "pendulum/base/try.h"
+#include "pendulum/report/estimate_texts.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/request/flag_values.h"
 
@@ -36,10 +37,12 @@ std::string Escaped(std::string_view text) {
 
 Json ParameterItem(const ListedParameter& parameter) {
   const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
-  return {{"estimate", number(parameter.estimate)},
-          {"std_error", number(parameter.std_error)},
-          {"total_std_error", number(parameter.total_std_error)},
-          {"unit", parameter.unit}};
+  Json item = {{"estimate", number(parameter.estimate)},
+               {"std_error", number(parameter.std_error)},
+               {"total_std_error", number(parameter.total_std_error)},
+               {"unit", parameter.unit}};
+  AddTexts(item);
+  return item;
 }
 
 Json ModelItem(const ListedModel& model) {

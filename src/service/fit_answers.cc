@@ -16,6 +16,7 @@
 #include "pendulum/base/utc_time.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/recording/calibration/calibration_source.h"
+#include "pendulum/report/estimate_texts.h"
 #include "pendulum/report/json_parts.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/sections_json.h"
@@ -227,6 +228,7 @@ HttpResponse ListFits(ServiceState& state, const Call& call) {
 HttpResponse GetFit(ServiceState& state, const Call& call) {
   auto kept = FindResult(state, call.id);
   if (!kept) return std::move(kept).error();
+  AddTextsOfParameters(kept->result);  // results of earlier versions have none
   return JsonAnswer(kept->result);
 }
 

@@ -82,6 +82,12 @@ Json PointsJson(const CalibrationTable& table, const CalibrationFit& fit) {
   return points;
 }
 
+Json CoefficientJson(const CoefficientText& coefficient) {
+  const auto& [value, error] = coefficient.value;
+  return {
+      {"name", coefficient.name}, {"text", value + (error.empty() ? "" : " ± " + error)}, {"unit", coefficient.unit}};
+}
+
 Json ParameterJson(const ParameterInfo& info) {
   return {{"name", info.name},
           {"symbol", info.symbol},
@@ -180,6 +186,7 @@ HttpResponse PostCalibration(ServiceState& /*state*/, const Call& call) {
   const auto rms = fit->LeaveOneOutRms();
   return JsonAnswer({{"calibration", fit->calibration.source},
                      {"order", fit->order},
+                     {"coefficients", ArrayOf(CoefficientTexts(*table, *fit), CoefficientJson)},
                      {"points", PointsJson(*table, *fit)},
                      {"leave_one_out_rms", rms ? Json(*rms) : Json(nullptr)},
                      {"text", CalibrationText(*table, *fit)}});

@@ -94,7 +94,8 @@ Json FieldsJson() {
 }  // namespace
 
 const std::string& FilledServicePage() {
-  static const std::string page = FillPage(ServicePage(), {{"@FLAGS@", FieldsJson()}});
+  static const std::string page =
+      FillPage(ServicePage(), {{"@NAMES@", ParameterNamesJson()}, {"@FLAGS@", FieldsJson()}});
   return page;
 }
 

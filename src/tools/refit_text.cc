@@ -10,10 +10,10 @@
 #include <unistd.h>
 
 #include "pendulum/base/format.h"
-#include "pendulum/base/rounding.h"
 #include "pendulum/base/staged_file.h"
 #include "pendulum/base/try.h"
 #include "pendulum/batch/overview.h"
+#include "pendulum/batch/quantity_text.h"
 #include "pendulum/batch/run_statistics.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/text_parts.h"
@@ -97,24 +97,6 @@ constexpr std::size_t kSummaryLines = 20;
 
 std::size_t LineCount(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
 
-/// A standard error or a spread; "-" if there is none.
-std::string SpreadText(const std::optional<double>& size) {
-  constexpr int kDigits = 2;
-  if (!size) return "-";
-  return *size > 0 ? RoundedText(*size, SignificantRounding(*size, kDigits)) : "0";
-}
-
-/// A median with the decimals of the spread, but with three digits or more: one outlier makes the spread large and
-/// leaves the median as it is.
-std::string MedianText(const Distribution& distribution) {
-  constexpr int kFewest = 3;
-  const double median = distribution.median;
-  if (median == 0 || !(distribution.std_dev > 0)) return NumberText(median, kTextDigits);
-  const Rounding rounding = PdgRounding(median, distribution.std_dev);
-  const bool is_enough = SignificantDigits(median, rounding) >= kFewest;
-  return RoundedText(median, is_enough ? rounding : SignificantRounding(median, kFewest));
-}
-
 /// The law of the table, and how often it was recommended.
 std::string LawText(const StoreSummary& summary) {
   std::int64_t compared = 0, recommended = 0;
@@ -141,9 +123,9 @@ std::string ParametersText(const StoreSummary& summary, bool of_the_rig_only) {
   for (const QuantitySummary& quantity : summary.quantities) {
     if (!summary.IsMainParameter(quantity) || (of_the_rig_only && !IsOfTheRig(quantity.name))) continue;
     rows.push_back(
-        {quantity.name, MedianText(quantity.distribution),
+        {quantity.name, ValueText(quantity.distribution, quantity.distribution.median),
          quantity.runs == 1 ? "-" : SpreadText(quantity.distribution.std_dev), SpreadText(quantity.median_repeat_error),
-         quantity.repeatability ? NumberText(quantity.repeatability->ScatterRatio(), 3) : "", UnitText(quantity.unit)});
+         quantity.repeatability ? RatioText(quantity.repeatability->ScatterRatio()) : "", UnitText(quantity.unit)});
   }
   if (rows.empty()) return "";
   return AlignedTable({{summary.main_law},

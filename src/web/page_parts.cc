@@ -4,8 +4,19 @@
 #include <cstddef>
 
 #include "pendulum/base/json.h"
+#include "pendulum/model/motion_model.h"
 
 namespace pendulum {
+
+nlohmann::ordered_json ParameterNamesJson() {
+  nlohmann::ordered_json names = nlohmann::ordered_json::object();
+  for (const ParameterInfo& info : AllParameters()) {
+    nlohmann::ordered_json& one = names[std::string(info.name)];
+    one = {{"symbol", info.symbol}, {"words", info.words}};
+    if (info.scales_with_gravity()) one["unit_over_g"] = info.relative_unit;
+  }
+  return names;
+}
 
 std::string ScriptText(const nlohmann::ordered_json& json) {
   const std::string text = JsonText(json);

@@ -13,7 +13,8 @@ namespace pendulum {
 
 std::string ToHtml(const Identification& identification, const std::string& command) {
   using Json = nlohmann::ordered_json;
-  return FillPage(ReportPageTemplate(), {{"@RESULT@", ToJson(identification)},
+  return FillPage(ReportPageTemplate(), {{"@NAMES@", ParameterNamesJson()},
+                                         {"@RESULT@", ToJson(identification)},
                                          {"@SECTIONS@", SectionsJson(identification)},
                                          {"@SERIES@", SeriesJson(identification, SeriesDetail::kPage)},
                                          {"@COMMAND@", command.empty() ? Json(nullptr) : Json{{"command", command}}}});

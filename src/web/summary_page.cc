@@ -7,7 +7,7 @@
 namespace pendulum {
 
 std::string SummaryHtml(const nlohmann::ordered_json& summary) {
-  return FillPage(SummaryPageTemplate(), {{"@SUMMARY@", summary}});
+  return FillPage(SummaryPageTemplate(), {{"@NAMES@", ParameterNamesJson()}, {"@SUMMARY@", summary}});
 }
 
 }  // namespace pendulum

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/base/rounding.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace pendulum::rounding_test {
@@ -69,6 +71,13 @@ TEST(PdgText, RoundsTheValueToTheDecimalOfALargeError) {
 TEST(PdgText, ShowsSignificantDigitsOnly) {
   EXPECT_EQ(Pdg(0.079, 0), "0.079 ± 0");
   EXPECT_EQ(Pdg(0.07900000000001234, 1e-16), "0.079 ± 1e-16");
+}
+
+TEST(PlusMinusText, ShowsTheValueAloneWithoutAnError) {
+  EXPECT_EQ(PlusMinusText(0.0790123, 0.0028), "0.0790 ± 0.0028");
+  EXPECT_EQ(PlusMinusText(3.0041e-6, 1.2e-7), "(3.00 ± 0.12)e-06");
+  EXPECT_EQ(PlusMinusText(0.07901234, 0), "0.0790123");
+  EXPECT_EQ(PlusMinusText(0.07901234, std::numeric_limits<double>::quiet_NaN()), "0.0790123");
 }
 
 TEST(RoundedText, RoundsAllNumbersOfAQuantityAlike) {

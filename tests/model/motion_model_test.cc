@@ -141,5 +141,16 @@ TEST(ParameterInfo, AngleTimeAndRateDoNotScaleWithGravity) {
   }
 }
 
+TEST(AllParameters, HaveWordsAndAreListedOnce) {
+  const std::vector<ParameterInfo> all = AllParameters();
+  const std::vector<std::string_view> names = Names(all);
+  EXPECT_THAT(names, IsSupersetOf({"inertia", "stribeck_rate", "release_angle", "pivot_x"}));
+  EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
+  for (const ParameterInfo& info : all) {
+    EXPECT_NE(info.symbol, "") << info.name;
+    EXPECT_NE(info.words, "") << info.name;
+  }
+}
+
 }  // namespace
 }  // namespace pendulum::motion_model_test

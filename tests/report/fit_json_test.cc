@@ -28,7 +28,7 @@ TEST(ParametersJson, HasNumbersUnitsAndFlagsByName) {
   EXPECT_EQ(parameters["inertia"].dump(),
             R"({"estimate":0.079,"std_error":0.00025,"interval95":[0.0785,0.0795],"systematic_std_error":0.001,)"
             R"("total_std_error":0.001030776406404415,"error_budget":{"noise":0.00025,"rig":0.001},)"
-            R"("unit":"kg m^2","fixed":false,"at_bound":false})");
+            R"("unit":"kg m^2","fixed":false,"at_bound":false,"text":"0.0790 ± 0.0010"})");
   EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
 }
 

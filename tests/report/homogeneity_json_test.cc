@@ -24,9 +24,10 @@ TEST(HomogeneityJson, ReportsSeparateEstimates) {
   EXPECT_EQ(
       inertia.dump(),
       R"({"unit":"kg m^2","statistic":0.16,"dof":1,"p":0.6892,"mean":0.078972,"std_error":0.00024,)"
-      R"("random_effects":{"mean":0.078972,"std_error":0.00024,"interval95":[0.0759,0.082],)"
+      R"("random_effects":{"mean":0.078972,"std_error":0.00024,"text":"0.07897 ± 0.00024","interval95":[0.0759,0.082],)"
       R"("between_std_dev":0.0,"between_interval95":[0.0,0.005]},)"
-      R"("recordings":[{"estimate":0.0789,"std_error":0.0003,"z":-0.4},{"estimate":0.0791,"std_error":0.0004,"z":0.4}]})");
+      R"("recordings":[{"estimate":0.0789,"std_error":0.0003,"text":"0.07890 ± 0.00030","z":-0.4},)"
+      R"({"estimate":0.0791,"std_error":0.0004,"text":"0.0791 ± 0.0004","z":0.4}]})");
 }
 
 TEST(HomogeneityJson, ReportsAnUninformativeRecording) {
@@ -36,10 +37,10 @@ TEST(HomogeneityJson, ReportsAnUninformativeRecording) {
   runs[1].z.reset();
   const Json json = HomogeneityOf(report)["parameters"]["inertia"]["recordings"];
   EXPECT_EQ(json[0].dump(),
-            R"({"estimate":null,"std_error":null,"z":null,)"
+            R"({"estimate":null,"std_error":null,"text":null,"z":null,)"
             R"("reason":"the recording on its own does not determine it; no other recording determines it"})");
-  EXPECT_EQ(json[1].dump(),
-            R"({"estimate":0.0791,"std_error":0.0004,"z":null,"reason":"no other recording determines it"})");
+  EXPECT_EQ(json[1].dump(), R"({"estimate":0.0791,"std_error":0.0004,"text":"0.0791 ± 0.0004","z":null,)"
+                            R"("reason":"no other recording determines it"})");
 }
 
 TEST(HomogeneityJson, NumbersDisagreeingRecordingsFromOne) {

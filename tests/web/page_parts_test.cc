@@ -11,6 +11,13 @@ using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::Not;
 
+TEST(ParameterNamesJson, HasTheSymbolTheWordsAndTheUnitWithoutARig) {
+  const Json names = ParameterNamesJson();
+  EXPECT_EQ(names["inertia"],
+            Json({{"symbol", "I_O"}, {"words", "moment of inertia"}, {"unit_over_g", "s^2"}}));  // MODEL.md section 1
+  EXPECT_EQ(names["zero_angle"], Json({{"symbol", "z"}, {"words", "zero of the sensor"}}));
+}
+
 TEST(ScriptText, CannotEndAScriptAndKeepsTheJson) {
   const Json json = {{"name", "</script><!--"}, {"value", 0.1}};
   EXPECT_THAT(ScriptText(json), Not(HasSubstr("<")));

@@ -18,6 +18,7 @@ TEST(ServicePage, LoadsItsScriptAndItsStyle) {
   EXPECT_THAT(page, StartsWith("<!doctype html>"));
   EXPECT_THAT(page, HasSubstr("src=\"/app.js\""));
   EXPECT_THAT(page, HasSubstr("href=\"/app.css\""));
+  EXPECT_THAT(page, HasSubstr(R"(id="names">@NAMES@<)"));
   EXPECT_THAT(page, HasSubstr(R"(id="flags">@FLAGS@<)"));
   EXPECT_THAT(page, Not(HasSubstr("<style")));
 }

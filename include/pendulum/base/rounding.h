@@ -36,6 +36,10 @@ int SignificantDigits(double x, const Rounding& rounding);
 /// 12 significant digits.
 ValueAndError PdgText(double value, double error);
 
+/// "0.83 ± 0.12", "(3.00 ± 0.12)e-06": value ± error by PdgRounding. Six significant digits of the value alone if the
+/// error is not positive.
+std::string PlusMinusText(double value, double error);
+
 /// x in the format `rounding`: "0.830", "3.00e-06"; never "-0.000".
 std::string RoundedText(double x, const Rounding& rounding);
 

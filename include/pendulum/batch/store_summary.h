@@ -83,7 +83,7 @@ struct TrendSummary {
   Trend trend;
   std::string column;
   bool is_of_dates = false;  ///< The abscissa is in days since 1970-01-01.
-  std::string text;
+  std::string slope, text;   ///< slope: "1.2e-06 ± 3e-07 kg m^2 per day".
   struct Point {
     double x = 0, y = 0, std_error = 0;  ///< std_error: NaN if there is none.
     std::string id;

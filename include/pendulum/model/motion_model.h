@@ -41,6 +41,9 @@ std::optional<MotionModel> WithGravity(const MotionModel& model, Gravity gravity
 /// The inertia and the parameters of the model's friction law, in the order in which trajectories take them.
 std::vector<ParameterInfo> PhysicalParameters(const MotionModel& model);
 
+/// Every parameter that a fit can have, once: those of all models, then those of recordings.
+std::vector<ParameterInfo> AllParameters();
+
 /// The names of all motion models, comma-separated, for messages and help.
 std::string MotionModelNames();
 

@@ -15,6 +15,11 @@ struct PagePart {
   nlohmann::ordered_json content;
 };
 
+/// The symbol of each parameter and what pages call it: {"inertia": {"symbol": "I_O", "words": "moment of inertia",
+/// "unit_over_g": "s^2"}, ...}. unit_over_g: the unit of its ratio to the gravity torque, which a fit without a rig
+/// has.
+nlohmann::ordered_json ParameterNamesJson();
+
 /// JSON escaped so that no string in it can end a script element.
 std::string ScriptText(const nlohmann::ordered_json& json);
 

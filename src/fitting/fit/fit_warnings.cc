@@ -340,8 +340,7 @@ std::string AdviceFor(Cause cause) {
 
 std::string SizeText(const Suspicion& suspicion) {
   const auto [factor, unit] = ShownUnitOf(suspicion.unit);
-  const ValueAndError text = PdgText(factor * suspicion.size, factor * suspicion.std_error);
-  return text.value + " ± " + text.error + " " + unit;
+  return PlusMinusText(factor * suspicion.size, factor * suspicion.std_error) + " " + unit;
 }
 
 std::string PlainSizeText(double size, const std::string& unit) {

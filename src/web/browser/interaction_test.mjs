@@ -4,11 +4,11 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { makeResult, makeSeries } from './fixture.mjs';
 import { assertRange, ink, kPlot, open, shownRange } from './page.mjs';
+import { makeReport } from './reports.mjs';
 
 test('dragging zooms, the residuals follow, and Show all goes back', async (t) => {
-  const page = await open(t, makeResult(), makeSeries());
+  const page = await open(t, makeReport());
   await page.locator(kPlot).scrollIntoViewIfNeeded();
   const box = await page.locator(`${kPlot} >> .u-over`).boundingBox();
   const y = box.y + box.height / 2;
@@ -30,7 +30,7 @@ test('dragging zooms, the residuals follow, and Show all goes back', async (t) =
 });
 
 test('the keyboard zooms, moves and resets', async (t) => {
-  const page = await open(t, makeResult(), makeSeries());
+  const page = await open(t, makeReport());
   await page.locator('#fit .linked').focus();
   await page.keyboard.press('+');
   assertRange(await shownRange(page), [4.9975, 14.9925]);
@@ -42,7 +42,7 @@ test('the keyboard zooms, moves and resets', async (t) => {
 });
 
 test('every control is reached by the Tab key and shows its focus', async (t) => {
-  const page = await open(t, makeResult(), makeSeries());
+  const page = await open(t, makeReport());
   const reached = new Set();
   for (let i = 0; i < 110; ++i) {
     await page.keyboard.press('Tab');
@@ -61,7 +61,7 @@ test('every control is reached by the Tab key and shows its focus', async (t) =>
 });
 
 test('another model can be shown in detail, or drawn over the first model', async (t) => {
-  const page = await open(t, makeResult(), makeSeries());
+  const page = await open(t, makeReport());
   const drag = page.locator('#fit').getByRole('button', { name: 'drag' });
   assert.equal(await drag.getAttribute('aria-pressed'), 'false');
   await drag.click();
@@ -72,19 +72,21 @@ test('another model can be shown in detail, or drawn over the first model', asyn
   assert.equal(await page.locator('[data-parameter=coulomb]').count(), 0);
   assertRange(await shownRange(page), [4.9975, 14.9925]);
   await page.locator('.models label', { hasText: 'drag' }).click();
-  assert.match(await page.locator('[data-parameter=drag]').textContent(), /at its bound/);
+  assert.match(await page.locator('[data-parameter=viscous]').textContent(), /at its bound/);
 });
 
 test('residuals in counts, σ and degrees', async (t) => {
-  const page = await open(t, makeResult(), makeSeries());
+  const page = await open(t, makeReport());
   const size = async () =>
     Number(
       /, ([\d.]+) \S+ root mean square/.exec(await page.locator('#fit .plot >> nth=1').getAttribute('aria-label'))[1],
     );
   const radians = await size();
+  const { result } = makeReport();
+  const [recording] = result.recordings;
   for (const [name, unit] of [
-    ['counts', 0.0035],
-    ['σ', 0.003],
+    ['counts', recording.resolution_rad],
+    ['σ', recording.fits[1].noise.sigma_rad],
     ['°', Math.PI / 180],
   ]) {
     await page.locator('#fit .choice label', { hasText: name }).click();
@@ -93,15 +95,21 @@ test('residuals in counts, σ and degrees', async (t) => {
 });
 
 test('amplitudes on a logarithmic axis', async (t) => {
-  const page = await open(t, makeResult(), makeSeries());
+  const page = await open(t, makeReport());
   await page.locator('#envelope label', { hasText: 'logarithmic' }).click();
   await page.waitForSelector('#envelope .plot[aria-label*=logarithmic]');
   assert.ok((await ink(page, '#envelope .plot')) > 3000);
 });
 
 test('a million samples are drawn and zoomed', { timeout: 600_000 }, async (t) => {
-  const options = { models: ['coulomb'], samples: 1_000_000, rate: 1000 };
-  const page = await open(t, makeResult(options), makeSeries(options));
+  const content = makeReport();
+  const [series] = content.series;
+  const kCount = 1_000_000;
+  const repeated = (values) => Array.from({ length: kCount }, (_unused, i) => values[i % values.length]);
+  Object.assign(series, { time_s: Array.from({ length: kCount }, (_unused, i) => i / 1000), measured: repeated(series.measured) });
+  const { coulomb } = series.models;
+  series.models = { coulomb: { ...coulomb, fitted: repeated(coulomb.fitted), linear_closed_form: null, nonlinear_closed_form: null } };
+  const page = await open(t, content);
   assert.ok((await ink(page, kPlot)) > 20_000);
   const took = await page.evaluate(async () => {
     const start = performance.now();

@@ -4,12 +4,12 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { makeResult, makeSeries } from './fixture.mjs';
 import { assertAccessible, ink, kLooks, kPlot, open } from './page.mjs';
+import { makeReport } from './reports.mjs';
 
 for (const [colorScheme, name, width] of kLooks) {
   test(`${colorScheme}, ${name}: accessible, and the page is not wider than the window`, async (t) => {
-    const page = await open(t, makeResult(), makeSeries(), {
+    const page = await open(t, makeReport(), {
       context: { colorScheme, viewport: { width, height: 800 } },
     });
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
@@ -18,7 +18,7 @@ for (const [colorScheme, name, width] of kLooks) {
 }
 
 test('the theme changes by its button, with the plots', async (t) => {
-  const page = await open(t, makeResult(), makeSeries(), { context: { colorScheme: 'light' } });
+  const page = await open(t, makeReport(), { context: { colorScheme: 'light' } });
   const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await background();
   await page.getByRole('button', { name: 'Dark' }).click();
@@ -31,7 +31,7 @@ test('the theme changes by its button, with the plots', async (t) => {
 });
 
 test('the printed page is light and without controls, and no plot is wider than the page', async (t) => {
-  const page = await open(t, makeResult(), makeSeries(), { context: { colorScheme: 'dark' } });
+  const page = await open(t, makeReport(), { context: { colorScheme: 'dark' } });
   await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
   await page.waitForFunction(() => document.documentElement.dataset.theme === 'light');
   assert.equal(await page.locator('.buttons').first().isVisible(), false);

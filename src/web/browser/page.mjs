@@ -11,8 +11,6 @@ import { pathToFileURL } from 'node:url';
 
 import { chromium } from 'playwright-core';
 
-import { sectionsOf } from './fixture_sections.mjs';
-
 const built = (name) => fs.readFileSync(new URL(`../dist/${name}`, import.meta.url), 'utf8');
 export const template = built('report.html');
 export const summaryTemplate = built('summary.html');
@@ -41,22 +39,18 @@ let written = 0;
 
 /** Writes a page with its tokens replaced by JSON, as the C++ program does. */
 function write(page, parts) {
-  const html = Object.entries(parts).reduce((text, [token, value]) => text.replace(token, () => embedded(value)), page);
+  const fill = (text, [id, value]) => text.replace(`@${id.toUpperCase()}@`, () => embedded(value));
+  const html = Object.entries(parts).reduce(fill, page);
   const file = path.join(folder, `page_${++written}.html`);
   fs.writeFileSync(file, html);
   return pathToFileURL(file).href;
 }
 
-/** Opens a report with this content. */
-export function open(t, result, series, options = {}) {
-  const { command = { command: 'fit_pendulum --data run.csv' }, sections = sectionsOf(result) } = options;
-  const parts = { '@RESULT@': result, '@SECTIONS@': sections, '@SERIES@': series, '@COMMAND@': command };
-  return openFile(t, write(template, parts), options);
-}
+/** Opens a report with this content, by the ids of its elements. */
+export const open = (t, content, options = {}) => openFile(t, write(template, content), options);
 
-/** Opens the summary of a batch. */
-export const openSummary = (t, summary, options = {}) =>
-  openFile(t, write(summaryTemplate, { '@SUMMARY@': summary }), options);
+/** Opens the summary of a batch with this content. */
+export const openSummary = (t, content, options = {}) => openFile(t, write(summaryTemplate, content), options);
 
 /**
  * An empty page. Its test fails on errors in the console and on requests that `mayAsk` does not allow. `expected`: errors

@@ -3,24 +3,16 @@
 // the tool.
 
 import assert from 'node:assert/strict';
-import fs from 'node:fs';
 import { test } from 'node:test';
-import { fileURLToPath } from 'node:url';
 
 import { openFile } from './page.mjs';
-import { dataset, fit } from './tool.mjs';
+import { dataset, embedded, fit } from './tool.mjs';
 
 const rig = ['--rig', dataset('textbook_rig.json'), '--model', 'viscous,coulomb', '--interval', 'covariance'];
 const kReports = {
   'one recording': ['--data', dataset('coulomb.csv'), ...rig],
   'three recordings': ['--data', ['runs_1.csv', 'runs_2.csv', 'runs_3.csv'].map(dataset).join(','), ...rig],
 };
-
-/** The embedded JSON of a page. */
-function embedded(url, id) {
-  const html = fs.readFileSync(fileURLToPath(url), 'utf8');
-  return JSON.parse(new RegExp(`<script type="application/json" id="${id}">(.*?)</script>`, 's').exec(html)[1]);
-}
 
 /** All texts of a block. The page leaves out columns without content. */
 const textsOf = (block) => {
@@ -62,7 +54,7 @@ async function assertTold(page, section) {
 for (const [name, flags] of Object.entries(kReports)) {
   test(`${name}: every section is on the page with its numbers, for each law and recording`, async (t) => {
     const { url, result } = fit(name.replace(' ', '_'), ...flags);
-    const sections = embedded(url, 'sections');
+    const sections = embedded(url).sections;
     assert.ok(sections.length > 15);
     const page = await openFile(t, url);
     for (const { model } of result.fits) {

@@ -4,11 +4,22 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { kHostile, makeFailures, makeHostile, makeLarge, makeSummary, makeTiny } from './fixture_summary.mjs';
+import { kHostile, makeFailures, makeHostile, makeLarge, makeScattered, makeSummary, makeTiny } from './batches.mjs';
 import { assertAccessible, assertRange, ink, kLooks, openSummary, shownRange, summaryTemplate } from './page.mjs';
 
 const kTrend = '#trend .plot';
 const ids = (page) => page.locator('main section').evaluateAll((parts) => parts.map((part) => part.id));
+/** Selects another parameter. */
+const choose = (page, name) => page.locator('.shown select').selectOption(name);
+/** A text of the page as the program writes it. */
+const printed = (text) =>
+  text
+    .replace(/ × 10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/g, (_all, minus, digits) => {
+      const power = [...digits].map((digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(digit)).join('');
+      return `e${minus === '' ? '+' : '-'}${power.padStart(2, '0')}`;
+    })
+    .replace(/−/g, '-')
+    .replace(/²/g, '^2');
 const heading = (page, id) => page.locator(`#${id}-title`).textContent();
 
 test('the page contains the placeholder once', () => {
@@ -35,57 +46,67 @@ test('the page has all sections in order, with their plots', async (t) => {
   assert.equal(await page.locator('nav a').count(), 9);
   for (const plot of ['#distribution .plot', kTrend]) assert.ok((await ink(page, plot)) > 3000, plot);
   assert.equal((await page.locator('#repeatability .forest svg').count()) > 0, true);
-  assert.equal(await page.title(), 'results.sqlite – summary of runs');
+  assert.equal(await page.title(), 'batch.sqlite – summary of runs');
 });
 
 test('values on the page equal the values in the JSON', async (t) => {
-  const summary = makeSummary();
-  const page = await openSummary(t, summary);
-  assert.match(
-    await page.locator('.banner').textContent(),
-    /^.1986 of 2000 recordings fitted; 10 missing, 2 refused, 2 not fitted yetRecordings with the same rig file are taken for repeats of one pendulum: .* No difference from the errors was found\.$/,
-  );
-  const row = await page.locator('#parameters tr', { hasText: 'inertia' }).first().textContent();
+  const content = makeSummary();
+  const { summary } = content;
+  const page = await openSummary(t, content);
+  const banner = await page.locator('.banner').textContent();
+  assert.match(banner, /^.61 of 73 recordings fitted; 10 missing, 2 refused/);
+  for (const { text } of [summary.grouping, summary.verdicts.find(({ model }) => model === 'coulomb')])
+    assert.ok(banner.includes(text), `${text} in ${banner}`);
   const inertia = summary.parameters.find(({ model, name }) => model === 'coulomb' && name === 'inertia');
-  assert.ok(Math.abs(Number(/0\.07\d+/.exec(row)[0]) - inertia.median) <= 0.51e-7, row); // 2 digits of 1.2e-6
-  assert.match(
-    await page.locator('#models .bars').textContent(),
-    /coulomb1580 \(79\.0 %\).*viscous400 \(20\.0 %\).*none20 \(1\.0 %\)/,
+  const row = page.locator('#parameters tr', { hasText: 'inertia' }).first();
+  const [name, runs, median, spread, error, scatter] = await row.locator('th, td').allTextContents();
+  assert.equal(name, 'moment of inertia I_Oinertia'.replace('_', ''));
+  assert.deepEqual(
+    [runs, median.split('\u00a0')[0], spread, printed(error), scatter.slice(0, 4)],
+    ['61', inertia.texts.median, inertia.texts.std_dev, inertia.texts.median_repeat_error, inertia.repeatability.texts.scatter_ratio],
   );
-  assert.match(await page.locator('#failures').textContent(), /24 fits failed: there is no such file/);
-  assert.equal(await page.locator('#outliers tbody tr').count(), 3);
-  assert.match(await page.locator('#outliers').textContent(), /run_350/);
-  assert.match(
-    await page.locator('#verdict').textContent(),
-    /1 recording disagrees .* under coulomb: run_1050 \(moment of inertia, 25\.2 standard errors\)\./,
-  );
-  assert.match(await page.locator('#provenance').textContent(), /(3f){32}/);
-  assert.match(await page.locator('#verdict .warnings').textContent(), /2 runs have not been fitted yet/);
+  assert.match(await page.locator('#models .bars').textContent(), /coulomb61 \(100 %\)/);
+  assert.match(await page.locator('#failures').textContent(), /20 fits failed: there is no such file/);
+  await choose(page, 'inertia');
+  const outlier = await page.locator('#outliers tbody tr').allTextContents();
+  assert.equal(outlier.length, 1);
+  assert.ok(outlier[0].startsWith(`batch_odd.csvrig_a${inertia.outliers[0].text}`), outlier[0]);
+  const { z } = summary.agreement.rows.flatMap(({ outliers }) => outliers)[0];
+  const found = `under coulomb: batch_odd.csv (moment of inertia, ${z.toFixed(1)} standard errors).`;
+  const verdict = await page.locator('#verdict').textContent();
+  assert.ok(verdict.includes(`1 recording disagrees with the others`) && verdict.includes(found), verdict);
+  assert.ok((await page.locator('#provenance').textContent()).includes(summary.store.manifest_sha256));
+  assert.match(await page.locator('#verdict .warnings').textContent(), /12 runs is neither a number nor a date/);
+  const [first] = inertia.repeatability.rows;
+  const group = await page.locator('#repeatability tbody tr', { hasText: 'rig_a' }).textContent();
+  assert.equal(printed(group), Object.values({ id: 'rig_a', runs: first.runs, ...first.texts }).join(''));
+  assert.ok(printed(await page.locator('#trend').textContent()).includes(inertia.trend.texts.slope));
 });
 
 test('another parameter and another model are shown, each by name', async (t) => {
   const page = await openSummary(t, makeSummary());
+  await choose(page, 'inertia');
   assert.match(await heading(page, 'trend'), /moment of inertia/);
-  await page.locator('.shown label', { hasText: 'dry friction' }).click();
+  await choose(page, 'coulomb');
   for (const id of ['distribution', 'repeatability', 'outliers', 'trend'])
     assert.match(await heading(page, id), /dry friction/);
   assert.match(await page.locator('#parameters .marked').textContent(), /dry friction/);
   assert.ok((await ink(page, kTrend)) > 3000);
-  await page.locator('.shown label', { hasText: 'release angle' }).click();
-  assert.match(await page.locator('#repeatability').textContent(), /Each run has a release angle of its own\./);
-  assert.match(await page.locator('#trend').textContent(), /no trend to show/);
+  await choose(page, 'release_angle');
+  assert.match(await page.locator('#repeatability').textContent(), /It depends on how each run begins/);
   await page.locator('.models label', { hasText: 'viscous' }).click();
-  assert.match(await page.locator('.banner').textContent(), /1986 of 2000 recordings fitted/);
-  assert.match(await heading(page, 'distribution'), /moment of inertia/);
+  assert.match(await page.locator('.banner').textContent(), /61 of 73 recordings fitted/);
+  assert.match(await heading(page, 'distribution'), /release angle/);
 });
 
 test('the page begins with the verdict that the error bars are too small', async (t) => {
-  const page = await openSummary(t, makeSummary({ scatter: 1.4 }));
+  const page = await openSummary(t, makeScattered());
   assert.match(
     await page.locator('.banner.caution').textContent(),
-    /repeats differ by more than their errors in 1 of 4 parameters: inertia scatters 1\.4 times/,
+    /more than their errors in 1 of 3 parameters: inertia scatters 2\.\d times/,
   );
-  assert.equal(await page.locator('#parameters .no').count(), 1);
+  await choose(page, 'inertia');
+  assert.match(await page.locator('#parameters .marked .no').textContent(), /more than the errors/);
   assert.match(await page.locator('#repeatability').textContent(), /The runs scatter by more than their errors predict\./);
 });
 
@@ -95,8 +116,8 @@ test('the trend zooms by buttons, keys and the mouse', async (t) => {
   const width = all[1] - all[0];
   await page.locator('#trend').getByRole('button', { name: 'Zoom in' }).click();
   assertRange(
-    (await shownRange(page, kTrend)).map((end) => end / 10),
-    [all[0] + width / 4, all[1] - width / 4].map((end) => end / 10),
+    await shownRange(page, kTrend),
+    [all[0] + width / 4, all[1] - width / 4],
   );
   await page.locator('#trend .linked').focus();
   await page.keyboard.press('0');
@@ -104,13 +125,13 @@ test('the trend zooms by buttons, keys and the mouse', async (t) => {
   await page.locator(kTrend).scrollIntoViewIfNeeded();
   const box = await page.locator(`${kTrend} >> .u-over`).boundingBox();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 50);
-  assert.match(await page.locator('#trend .readout').textContent(), /^run_\d+ \(rig_[abc]\): .*± .* at 2\d\.\d+$/);
+  assert.match(await page.locator('#trend .readout').textContent(), /^batch_rig_[abc]_\d+\.csv \(rig_[abc]\): .*± .* at 2\d\.\d+$/);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.75 * box.width, box.y + 50, { steps: 5 });
   await page.mouse.up();
   const [from, to] = await shownRange(page, kTrend);
   assert.ok(
-    Math.abs(from - (all[0] + 0.5 * width)) < 0.3 && Math.abs(to - (all[0] + 0.75 * width)) < 0.3,
+    Math.abs(from - (all[0] + 0.5 * width)) < 0.01 && Math.abs(to - (all[0] + 0.75 * width)) < 0.01,
     `${from} ${to}`,
   );
 });
@@ -118,9 +139,9 @@ test('the trend zooms by buttons, keys and the mouse', async (t) => {
 test('groups are hidden one by one, and drawn about their medians', async (t) => {
   const page = await openSummary(t, makeSummary());
   const told = () => page.locator(kTrend).getAttribute('aria-label');
-  assert.match(await told(), /of 1980 runs/);
+  assert.match(await told(), /of 61 runs/);
   await page.locator('#trend').getByRole('button', { name: 'rig_b' }).click();
-  assert.match(await told(), /of 1320 runs/);
+  assert.match(await told(), /of 41 runs/);
   await page.locator('#trend .choice label', { hasText: 'differences' }).click();
   assert.ok((await ink(page, kTrend)) > 3000);
 });
@@ -140,7 +161,6 @@ test('every control is reached by the Tab key', async (t) => {
   for (const name of [
     'Dark',
     'coulomb',
-    'moment of inertia',
     'rig_a',
     'Zoom in',
     'Further',
@@ -180,7 +200,7 @@ test('100 parameters of 2000 points are drawn, one after another', { timeout: 60
   assert.equal(await page.locator('#parameters tbody tr').count(), 100);
   const took = await page.evaluate(async () => {
     const start = performance.now();
-    const list = document.querySelector('select');
+    const list = document.querySelector('.shown select');
     list.value = 'term_99';
     list.dispatchEvent(new Event('change'));
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -213,7 +233,7 @@ test('names are shown as text, whatever characters they have', async (t) => {
 for (const [colorScheme, name, width] of kLooks) {
   test(`${colorScheme}, ${name}: accessible, and not wider than the window`, async (t) => {
     const options = { context: { colorScheme, viewport: { width, height: 800 } } };
-    for (const make of [() => makeSummary({ scatter: 1.4 }), makeFailures, makeLarge]) {
+    for (const make of [makeScattered, makeFailures, makeLarge]) {
       const page = await openSummary(t, make(), options);
       assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);
       await assertAccessible(page);

@@ -3,9 +3,8 @@
 
 import { banner, warningList } from '../shared/banner';
 import { details, el, symbolElement, text, type Child } from '../shared/dom';
-import { sentence, typeset, withTheta } from '../shared/prose';
+import { numberText, sentence, typeset, withTheta } from '../shared/prose';
 import type { Comparison, Fit, FitSummary, Result, SummaryQuantity } from '../shared/result_types';
-import { plusMinus } from '../shared/rounding';
 import { section } from '../shared/section';
 import { symbolOf, unitText, wordsOf } from '../shared/units';
 import { budgetBar, budgetLegend, sourcesOf } from './budget';
@@ -53,7 +52,7 @@ function remarkOf({ homogeneity, status }: Fit, name: string): string | null {
   const scatter = homogeneity?.parameters[name]?.random_effects;
   const scattered = status === 'converged' && homogeneity?.agrees === false && homogeneity.outliers.length === 0;
   return scattered && scatter && scatter.mean !== null
-    ? `random effects: ${plusMinus(scatter.mean, scatter.std_error)}`
+    ? `random effects: ${numberText(scatter.text)}`
     : null;
 }
 

@@ -40,7 +40,7 @@ export interface Report {
 
 /** Index of the main fit; -1 without a fit. */
 export function bestFit(result: Result): number {
-  const rms = (fit: Fit) => withUnit(fit.statistics, 'rms_residual')?.value;
+  const rms = (fit: Fit) => withUnit(fit.statistics, 'rms_residual');
   const best = mainFit(result.fits, result.comparison?.recommended, rms);
   return best ? result.fits.indexOf(best) : -1;
 }

@@ -5,10 +5,9 @@ import type { Loose, Num, Status } from '../shared/result_types';
 
 export interface ItemParameter {
   estimate: Num;
-  std_error: Num;
-  /** Statistical and systematic, in squares. */
-  total_std_error?: Num;
   unit: string;
+  /** Value ± total error; null without a value. */
+  text: string | null;
 }
 
 export interface ItemModel {
@@ -156,7 +155,7 @@ export interface CalibrationPoint {
 
 export interface CalibrationAnswer {
   calibration: Loose & { coefficients: number[]; input: string; angle_unit: string; residual_std_dev: Num };
-  order: number;
+  coefficients: { name: string; text: string; unit: string }[];
   points: CalibrationPoint[];
   leave_one_out_rms: Num;
   text: string;

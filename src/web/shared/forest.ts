@@ -9,9 +9,9 @@ export interface ForestRow {
   label: string;
   disagrees: boolean;
   estimate: Num;
-  std_error: Num;
+  /** The estimate with its error. */
+  text: string | null | undefined;
   interval95: [Num, Num] | null;
-  z: Num;
   /** Name of a colour, instead of the colour of its kind. */
   colour?: string;
 }

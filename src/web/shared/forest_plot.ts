@@ -5,8 +5,7 @@ import { roundTicks, tickTexts } from './axes';
 import { el } from './dom';
 import { clipped, forestRange, placeOf, type ForestRow, type Place } from './forest';
 import { svg } from './marks';
-import { inList } from './prose';
-import { plusMinus } from './rounding';
+import { inList, numberText } from './prose';
 import { saveButtons, standalone } from './save';
 
 const kRow = 34; // px
@@ -102,7 +101,7 @@ function labels(rows: ForestRow[]): HTMLElement {
 /** Description of the plot for screen readers. */
 export function forestSentence(what: string, unit: string, rows: ForestRow[]): string {
   const told = rows.flatMap((row) =>
-    row.estimate === null ? [] : [`${row.label}${row.disagrees ? ' (disagrees)' : ''} ${plusMinus(row.estimate, row.std_error)}`],
+    row.estimate === null ? [] : [`${row.label}${row.disagrees ? ' (disagrees)' : ''} ${numberText(row.text)}`],
   );
   return `Forest plot of the ${what}${unit === '' ? '' : ` in ${unit}`}: ${inList(told)}.`;
 }

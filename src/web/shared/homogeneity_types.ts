@@ -7,12 +7,12 @@ import type { Num } from './result_types';
 export interface RunEstimate {
   estimate: Num;
   std_error: Num;
-  z: Num;
+  text: string | null;
 }
 
 export interface RandomEffects {
   mean: Num;
-  std_error: Num;
+  text: string;
   interval95: [Num, Num] | null;
 }
 

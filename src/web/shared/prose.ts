@@ -17,7 +17,8 @@ const kSuperscript: Record<string, string> = {
   '9': '⁹',
 };
 
-const raised = (digits: string): string => [...digits].map((digit) => kSuperscript[digit] ?? '').join('');
+/** "⁻²" for "-2". */
+export const raised = (digits: string): string => [...digits].map((digit) => kSuperscript[digit] ?? '').join('');
 
 let worded = (words: string): string => words;
 
@@ -37,6 +38,10 @@ export function typeset(words: string): string {
     .replace(/\^(-?\d+)/g, (_all, power: string) => raised(power))
     .replace(/(?<![\p{L}\d_.)\]⁻-])-(?=\d)/gu, '−');
 }
+
+/** A number as the program writes it, as print does; "–" if there is none. */
+export const numberText = (text: string | null | undefined): string =>
+  text === null || text === undefined || text === '-' ? '–' : typeset(text);
 
 /** "θ″" for "th''": the angle in an equation. */
 export const withTheta = (words: string): string =>

@@ -24,6 +24,10 @@ export interface Parameter {
   /** Standard error by source: noise, rig, calibration, clock, sensor, inconstancy, friction_law. */
   error_budget?: Record<string, Num> | null;
   unit: string;
+  /** Value ± total error; null without a value. */
+  text: string | null;
+  /** The same of an angle or a rate, in degrees. */
+  text_in_degrees?: string;
   fixed: boolean;
   at_bound: boolean;
   reason?: string;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 
 import { inDegrees, symbolOf, unitText, withUnit, wordsOf } from './units';
+
+// As in a page that the program wrote.
+vi.stubGlobal('document', { getElementById: () => ({ textContent: '{"inertia": {"symbol": "I_O", "words": "moment of inertia", "unit_over_g": "s^2"}, "coulomb": {"symbol": "τ_c", "words": "dry friction", "unit_over_g": "1"}, "asymmetry": {"symbol": "α", "words": "asymmetry of friction"}, "zero_drift": {"symbol": "z\'", "words": ""}}' }) });
 
 describe('units', () => {
   test('powers are superscripts, and spaces do not break', () => {
@@ -15,7 +18,10 @@ describe('units', () => {
     expect(symbolOf('coulomb', '1')).toBe('τ_c/G');
     expect(symbolOf('inertia', 's^2')).toBe('I_O/G');
     expect(symbolOf('asymmetry', '1')).toBe('α');
+    expect(symbolOf('zero_drift', 'rad/s')).toBe('z′');
     expect(symbolOf('new_term')).toBeNull();
+    expect(wordsOf('inertia')).toBe('moment of inertia');
+    expect(wordsOf('zero_drift')).toBe('zero_drift');
     expect(wordsOf('new_term')).toBe('new_term');
   });
 
@@ -25,8 +31,8 @@ describe('units', () => {
   });
 
   test('a key with any unit is found', () => {
-    expect(withUnit({ rms_residual_rad_s: 0.1 }, 'rms_residual')).toEqual({ value: 0.1, unit: 'rad/s' });
-    expect(withUnit({ rms_residual_rad: null }, 'rms_residual')).toBeNull();
-    expect(withUnit(null, 'rms_residual')).toBeNull();
+    expect(withUnit({ rms_residual_rad_s: 0.1 }, 'rms_residual')).toBe(0.1);
+    expect(withUnit({ rms_residual_rad: null }, 'rms_residual')).toBeUndefined();
+    expect(withUnit({ sigma_std_error: 1, sigma_rad: 2 }, 'sigma')).toBe(2);
   });
 });

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Distribution of the estimates of one parameter over the runs. */
 
+import { tickTexts } from '../shared/axes';
 import { Chart, padded } from '../shared/chart';
 import { details, el } from '../shared/dom';
 import { swatch, type Mark } from '../shared/marks';
+import { numberText } from '../shared/prose';
 import { absent, figure, section } from '../shared/section';
 import { facts, table, type Cell } from '../shared/table';
-import { unitText, wordsOf } from '../shared/units';
+import { spacedUnit, unitText, wordsOf } from '../shared/units';
 import type { Counts, ParameterSummary } from './types';
-import { counted, countText, spreadText, valueTo } from './words';
+import { counted, countText, withUnitOf } from './words';
 
 const kLeastTop = 4; // runs, so that the ticks are integers
 const kReach = 1.5; // the axis is extended by at most this many widths of the histogram, to show the error
@@ -76,34 +78,30 @@ function legend({ median_std_error: error, lower_quartile: lower }: ParameterSum
 }
 
 function histogramPart(one: ParameterSummary, bars: Counts): HTMLElement {
-  const step = barsOf(bars).width;
-  const ends = `${valueTo(bars.from, step)} to ${valueTo(bars.to, step, one.unit)}`;
-  const caption = `${counted(one.runs, 'run')}, ${wordsOf(one.name)} from ${ends}.${beyond(bars)}`;
-  const chart = chartOf(
-    one,
-    bars,
-    `Histogram: ${caption} Median ${valueTo(one.median, one.median_std_error ?? one.std_dev, one.unit)}.`,
-  );
   const { left, width } = barsOf(bars);
+  const ends = tickTexts([...left, bars.to], width / 10);
+  const range = `${ends[0]} to ${ends[ends.length - 1]}${spacedUnit(one.unit)}`;
+  const caption = `${counted(one.runs, 'run')}, ${wordsOf(one.name)} from ${range}.${beyond(bars)}`;
+  const chart = chartOf(one, bars, `Histogram: ${caption} Median ${withUnitOf(one.texts.median, one.unit)}.`);
   const unit = unitText(one.unit);
   const rows = (): HTMLElement =>
     table(
       'Runs by value',
       [{ head: `From${unit && ` [${unit}]`}` }, { head: 'To', kind: 'number' }, { head: 'Runs', kind: 'number' }],
-      bars.counts.map((count, i) => [valueTo(left[i], width), valueTo(left[i] + width, width), countText(count)]),
+      bars.counts.map((count, i) => [ends[i], ends[i + 1], countText(count)]),
     );
   return el('div', {}, figure(caption, chart.host, legend(one)), details('Bars as a table', rows));
 }
 
-function numbers(one: ParameterSummary): HTMLElement {
-  const spread = one.median_std_error ?? one.std_dev;
+function numbers({ texts, unit }: ParameterSummary): HTMLElement {
+  const between = (from: string, to: string): Cell => `${numberText(from)} to ${withUnitOf(to, unit)}`;
   const rows: [string, Cell][] = [
-    ['median', valueTo(one.median, spread, one.unit)],
-    ['mean', valueTo(one.mean, spread, one.unit)],
-    ['middle half', `${valueTo(one.lower_quartile, spread)} to ${valueTo(one.upper_quartile, spread, one.unit)}`],
-    ['all', `${valueTo(one.minimum, spread)} to ${valueTo(one.maximum, spread, one.unit)}`],
-    ['standard deviation over all runs', spreadText(one.std_dev, one.unit)],
-    ['quoted error, median', one.median_std_error === null ? 'none' : spreadText(one.median_std_error, one.unit)],
+    ['median', withUnitOf(texts.median, unit)],
+    ['mean', withUnitOf(texts.mean, unit)],
+    ['middle half', between(texts.lower_quartile, texts.upper_quartile)],
+    ['all', between(texts.minimum, texts.maximum)],
+    ['standard deviation over all runs', withUnitOf(texts.std_dev, unit)],
+    ['quoted error, median', withUnitOf(texts.median_std_error, unit)],
   ];
   return facts(rows);
 }

@@ -3,7 +3,8 @@
 
 import { text } from '../shared/dom';
 import { identifier, visible } from '../shared/names';
-import { fixed, plusMinus } from '../shared/rounding';
+import { numberText } from '../shared/prose';
+import { fixed } from '../shared/rounding';
 import { section } from '../shared/section';
 import { table, type Cell, type Column } from '../shared/table';
 import { unitText, wordsOf } from '../shared/units';
@@ -44,7 +45,7 @@ export function outliersSection(one: ParameterSummary, summary: Summary): HTMLEl
   const rows = outliers.map((run): Cell[] => [
     identifier(run.id),
     ...(grouped ? [run.group === null ? '–' : identifier(run.group)] : []),
-    plusMinus(run.estimate, run.std_error),
+    numberText(run.text),
     run.z === null ? '–' : fixed(run.z, 1),
   ]);
   const count =

@@ -2,14 +2,14 @@
 /** Table of all parameters of the selected model, in which one can be selected. */
 
 import { el, text, type Child } from '../shared/dom';
-import { probabilityText } from '../shared/rounding';
+import { numberText } from '../shared/prose';
 import { absent, section } from '../shared/section';
 import { select } from '../shared/select';
 import { table, type Cell, type Column } from '../shared/table';
 import { quantityName, wordsOf } from '../shared/units';
 import type { ParameterSummary, Verdict } from './types';
 import { parametersOf, shownModel, shownParameter, type View } from './view';
-import { countText, ratioText, spreadText, valueTo } from './words';
+import { countText, withUnitOf } from './words';
 
 const kRemarks: Record<Verdict, Child> = {
   agrees: null,
@@ -20,26 +20,25 @@ const kRemarks: Record<Verdict, Child> = {
 /** "1.03" and its meaning in words. */
 function scatterCell({ repeatability }: ParameterSummary): Cell {
   if (!repeatability) return '–';
-  const { verdict, scatter_ratio: ratio } = repeatability;
+  const { verdict, texts } = repeatability;
   const remark = kRemarks[verdict];
   return [
-    ratioText(ratio),
+    numberText(texts.scatter_ratio),
     remark !== null && el('small', verdict === 'scatter_larger' ? { class: 'no' } : {}, remark),
   ];
 }
 
 function row(one: ParameterSummary): Cell[] {
-  const { median, std_dev: spread, unit } = one;
-  const error = one.median_repeat_error ?? one.median_std_error;
+  const { texts, unit } = one;
   return [
     quantityName(one.name, unit),
     countText(one.runs),
-    valueTo(median, error ?? spread, unit),
-    spreadText(spread),
-    spreadText(error),
+    withUnitOf(texts.median, unit),
+    numberText(texts.std_dev),
+    numberText(texts.median_repeat_error),
     scatterCell(one),
     countText(one.outliers_total),
-    one.trend ? probabilityText(one.trend.p) : '–',
+    numberText(one.trend?.texts.p),
   ];
 }
 

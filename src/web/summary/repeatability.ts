@@ -16,26 +16,22 @@ export function rowsToDraw(rows: GroupRow[]): GroupRow[] {
 }
 
 /** A row of a plot with one group of runs. */
-const forestRow = (row: GroupRow, estimate: GroupRow['p'], interval95: [number, number]): ForestRow => ({
-  kind: 'recording',
-  label: elided(row.group, kLabel),
-  disagrees: false,
-  estimate,
-  std_error: null,
-  interval95,
-  z: null,
-});
+const forestRow = (
+  { group }: GroupRow,
+  disagrees: boolean,
+  estimate: GroupRow['p'],
+  text: string,
+  interval95: [number, number],
+): ForestRow => ({ kind: 'recording', label: elided(group, kLabel), disagrees, estimate, text, interval95 });
 
 /** Ratio of scatter to error bars of each group, and a last row at the expected ratio 1. */
-export function scatterRows({ rows }: Repeatability): ForestRow[] {
-  const drawn = rowsToDraw(rows).map((row) => ({
-    ...forestRow(row, row.scatter_ratio, row.scatter_interval95),
-    disagrees: row.disagrees,
-  }));
-  const truth = { disagrees: false, estimate: 1, std_error: null, interval95: null, z: null };
-  return [...drawn, { ...truth, kind: 'joint', label: 'true error bars' }];
-}
+export const scatterRows = ({ rows }: Repeatability): ForestRow[] => [
+  ...rowsToDraw(rows).map((row) =>
+    forestRow(row, row.disagrees, row.scatter_ratio, row.texts.scatter_ratio, row.scatter_interval95),
+  ),
+  { kind: 'joint', label: 'true error bars', disagrees: false, estimate: 1, text: '1', interval95: null },
+];
 
 /** Weighted mean of each group with its 95 % confidence interval. */
 export const meanRows = ({ rows }: Repeatability): ForestRow[] =>
-  rowsToDraw(rows).map((row) => ({ ...forestRow(row, row.weighted_mean, row.interval95), std_error: row.std_error }));
+  rowsToDraw(rows).map((row) => forestRow(row, false, row.weighted_mean, row.texts.weighted_mean, row.interval95));

@@ -5,48 +5,36 @@ import { details, el, text } from '../shared/dom';
 import type { ForestRow } from '../shared/forest';
 import { clippedWords, forestPlot, forestSentence } from '../shared/forest_plot';
 import { identifier, visible } from '../shared/names';
-import { sentence } from '../shared/prose';
-import { plusMinus, probabilityText, significant } from '../shared/rounding';
+import { numberText, sentence } from '../shared/prose';
 import { absent, figure, section } from '../shared/section';
 import { facts, table, type Cell, type Column } from '../shared/table';
 import { unitText, wordsOf } from '../shared/units';
 import { meanRows, rowsToDraw, scatterRows } from './repeatability';
 import type { GroupRow, ParameterSummary, Repeatability } from './types';
-import { countText, ratioText, spreadText } from './words';
+import { countText, withUnitOf } from './words';
 
 const kOpenRows = 12; // of a table that is not collapsed, at most
 const kMostRows = 500;
 
-function numbers(found: Repeatability, unit: string): HTMLElement {
-  const small = probabilityText(found.p);
+function numbers({ texts, between_std_dev: between, ...found }: Repeatability, unit: string): HTMLElement {
   return facts([
-    ['scatter ÷ error bars', ratioText(found.scatter_ratio)],
-    ['χ², degrees of freedom', `${significant(found.chi2, 5)}, ${countText(found.dof)}`],
-    ['p if the errors are right', small],
-    [
-      'scatter beyond the error bars',
-      found.between_std_dev === null
-        ? '–'
-        : found.between_std_dev > 0
-          ? spreadText(found.between_std_dev, unit)
-          : 'none',
-    ],
+    ['scatter ÷ error bars', numberText(texts.scatter_ratio)],
+    ['χ², degrees of freedom', `${numberText(texts.chi2)}, ${countText(found.dof)}`],
+    ['p if the errors are right', numberText(texts.p)],
+    ['scatter beyond the error bars', between === 0 ? 'none' : withUnitOf(texts.between_std_dev, unit)],
     ['groups', countText(found.groups)],
     ['runs', countText(found.runs)],
   ]);
 }
 
-function row(one: GroupRow): Cell[] {
-  const [from, to] = one.scatter_interval95.map(ratioText);
-  return [
-    [identifier(one.group), one.disagrees && el('small', { class: 'no' }, 'disagrees')],
-    countText(one.runs),
-    plusMinus(one.weighted_mean, one.std_error),
-    one.scatter_ratio === null ? '–' : ratioText(one.scatter_ratio),
-    `${from} to ${to}`,
-    probabilityText(one.p),
-  ];
-}
+const row = ({ group, disagrees, runs, texts }: GroupRow): Cell[] => [
+  [identifier(group), disagrees && el('small', { class: 'no' }, 'disagrees')],
+  countText(runs),
+  numberText(texts.weighted_mean),
+  numberText(texts.scatter_ratio),
+  texts.scatter_interval95,
+  numberText(texts.p),
+];
 
 function groupTable({ rows }: Repeatability, group: string, unit: string): HTMLElement {
   const number = 'number' as const;

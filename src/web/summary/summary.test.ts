@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 
 import { elided, visible } from '../shared/names';
 import { barsOf, rangeOf } from './distribution_section';
@@ -8,7 +8,6 @@ import { disagreementText } from './outliers_section';
 import { meanRows, rowsToDraw, scatterRows } from './repeatability';
 import { groupCount, median, middle, nearest, trendGroups, within, xRange } from './trend';
 import { columnLabel } from './trend_plot';
-import { perText } from './trend_section';
 import type {
   GroupRow,
   ModelCounts,
@@ -20,7 +19,10 @@ import type {
   Verdict,
 } from './types';
 import { mainModel, parametersOf, shownParameter, type View } from './view';
-import { counted, countText, ratioText, shareText, spreadText, valueTo } from './words';
+import { counted, countText, shareText, withUnitOf } from './words';
+
+// As in a page that the program wrote.
+vi.stubGlobal('document', { getElementById: () => ({ textContent: '{"inertia": {"symbol": "I_O", "words": "moment of inertia", "unit_over_g": "s^2"}}' }) });
 
 const row = (group: string, runs: number, scatter_ratio: number | null, p: number | null = 0.5): GroupRow => ({
   group,
@@ -32,6 +34,7 @@ const row = (group: string, runs: number, scatter_ratio: number | null, p: numbe
   scatter_interval95: [0.6, 1.9],
   p,
   disagrees: p !== null && p < 1e-6,
+  texts: { weighted_mean: '2.00 ± 0.10', scatter_ratio: String(scatter_ratio), scatter_interval95: '0.6 to 1.9', p: '0.5' },
 });
 
 const repeats = (verdict: Verdict, scatter_ratio: number, dof = 100, rows: GroupRow[] = []): Repeatability => ({
@@ -45,6 +48,7 @@ const repeats = (verdict: Verdict, scatter_ratio: number, dof = 100, rows: Group
   verdict,
   has_enough_runs: dof >= 20,
   text: '',
+  texts: { chi2: '', scatter_ratio: '', p: '', between_std_dev: '' },
   rows,
 });
 
@@ -146,16 +150,10 @@ describe('words', () => {
     expect(shareText(1, 100_000)).toBe('< 0.1 %'); // not none
   });
 
-  test('values have the decimals of their error, ratios have two', () => {
-    expect(valueTo(0.07900123, 1.2e-6, 'kg m^2')).toBe('0.0790012\u00a0kg\u00a0m²');
-    expect(valueTo(0.07900123, null)).toBe('0.0790012');
-    expect(valueTo(null, 1)).toBe('–');
-    expect(spreadText(null)).toBe('–');
-    expect(spreadText(0.000101)).toBe('0.00010');
-    expect(ratioText(1)).toBe('1.00');
-    expect(ratioText(9.996)).toBe('10.0');
-    expect(ratioText(1234)).toBe('1230');
-    expect(ratioText(null)).toBe('–');
+  test('numbers of the JSON are typeset, with their unit if there is a number', () => {
+    expect(withUnitOf('0.0790012', 'kg m^2')).toBe('0.0790012\u00a0kg\u00a0m²');
+    expect(withUnitOf('-1.2e-06', '1')).toBe('−1.2 × 10⁻⁶');
+    expect(withUnitOf('-', 's')).toBe('–');
   });
 
   test('hidden characters of a name are made visible', () => {
@@ -268,9 +266,11 @@ describe('repeatability', () => {
     const rows = scatterRows(found);
     expect(rows.map(({ estimate }) => estimate)).toEqual([1.1, 3, 1]);
     expect(rows.map((one) => one.disagrees)).toEqual([false, true, false]);
+    expect(rows[0].text).toBe('1.1');
     expect(rows[0].interval95).toEqual(found.rows[0].scatter_interval95);
     expect(rows[1].label).toHaveLength(18);
     expect(rows[2]).toMatchObject({ kind: 'joint', label: 'true error bars' });
+    expect(meanRows(found)[0].text).toBe('2.00 ± 0.10');
     expect(meanRows(found)[0].interval95).toEqual(found.rows[0].interval95);
   });
 
@@ -297,6 +297,7 @@ describe('the trend', () => {
     x,
     y,
     std_error,
+    text: `${y}`,
     id: `run_${x}`,
     group,
   });
@@ -307,6 +308,7 @@ describe('the trend', () => {
     std_error: 0.1,
     p: 0.1,
     text: '',
+    texts: { slope: '', p: '' },
     points,
     points_total: points.length,
     ...more,
@@ -315,7 +317,7 @@ describe('the trend', () => {
   test('groups are in order of occurrence, their runs in order of x', () => {
     const groups = trendGroups(trend([run(3, 13, 'b'), run(1, 1, 'a'), run(0, null, 'a'), run(2, 2, 'a', null)]));
     expect(groups.map(({ name }) => name)).toEqual(['b', 'a']);
-    expect(groups[1]).toMatchObject({ x: [1, 2], y: [1, 2], error: [0.1, NaN], ids: ['run_1', 'run_2'] });
+    expect(groups[1]).toMatchObject({ x: [1, 2], y: [1, 2], error: [0.1, NaN], texts: ['1', '2'], ids: ['run_1', 'run_2'] });
     expect(xRange(groups)).toEqual([1 - 0.04, 3 + 0.04]);
     expect(xRange([])).toEqual([-0.02, 1.02]);
     expect(within(groups[1], 1.5, 9)).toEqual([1, 2]);
@@ -339,13 +341,9 @@ describe('the trend', () => {
     expect(groupCount(many)).toBe(7);
   });
 
-  test('the labels of the column and of the slope', () => {
+  test('the label of the column has its unit', () => {
     expect(columnLabel(trend([]))).toBe('position in the manifest');
-    expect(perText(trend([]))).toBe('run');
     const dated = trend([], { column: 'date', unit: 'days since 2026-01-01' });
     expect(columnLabel(dated)).toBe('date [days since 2026-01-01]');
-    expect(perText(dated)).toBe('day');
-    expect(perText(trend([], { column: 'temperature', unit: 'K' }))).toBe('K');
-    expect(perText(trend([], { column: 'visit' }))).toBe('unit of visit');
   });
 });

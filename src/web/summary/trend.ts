@@ -15,6 +15,8 @@ export interface TrendGroup {
   error: number[];
   /** Median of the run's group with the slope removed, at the x of the middle run. */
   centre: number[];
+  /** Value ± standard error. */
+  texts: string[];
   ids: string[];
   groups: (string | null)[];
 }
@@ -47,15 +49,16 @@ export function trendGroups(trend: Trend): TrendGroup[] {
   const lines = centres(trend);
   const apart = lines.size <= kMostGroups;
   const found = new Map<string | null, TrendGroup>();
-  for (const { x, y, std_error: error, id, group } of [...trend.points].sort((a, b) => a.x - b.x)) {
+  for (const { x, y, std_error: error, text, id, group } of [...trend.points].sort((a, b) => a.x - b.x)) {
     if (y === null) continue;
     const name = apart ? group : null;
-    const made = found.get(name) ?? { name, x: [], y: [], error: [], centre: [], ids: [], groups: [] };
+    const made = found.get(name) ?? { name, x: [], y: [], error: [], centre: [], texts: [], ids: [], groups: [] };
     found.set(name, made);
     made.x.push(x);
     made.y.push(y);
     made.error.push(error ?? NaN);
     made.centre.push(lines.get(group) ?? NaN);
+    made.texts.push(text);
     made.ids.push(id);
     made.groups.push(group);
   }

@@ -7,7 +7,8 @@ import { recordingMark, swatch } from '../shared/marks';
 import { elided, visible } from '../shared/names';
 import { followPointer, keyboardBox, navigationButtons, type NavigationWords } from '../shared/navigation';
 import type { Painter } from '../shared/painter';
-import { plusMinus, significant } from '../shared/rounding';
+import { numberText } from '../shared/prose';
+import { significant } from '../shared/rounding';
 import { extent } from '../shared/samples';
 import { figure } from '../shared/section';
 import { TimeView } from '../shared/time_view';
@@ -170,7 +171,7 @@ export class TrendPlot {
     }
     const { group, i } = next;
     const of = group.groups[i] === null ? '' : ` (${elided(group.groups[i]!, kLabel)})`;
-    const value = plusMinus(group.y[i], group.error[i] || null) + spacedUnit(this.one.unit);
+    const value = numberText(group.texts[i]) + spacedUnit(this.one.unit);
     this.line.textContent = `${elided(group.ids[i], 40)}${of}: ${value} at ${significant(group.x[i], 6)}`;
   }
 

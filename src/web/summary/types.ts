@@ -126,8 +126,10 @@ export interface ParameterSummary {
   upper_quartile: Num;
   /** Median of the standard errors of the runs. */
   median_std_error: Num;
-  /** Median of the errors that repeats are compared with; absent in summaries of earlier versions. */
-  median_repeat_error?: Num;
+  /** Median of the errors that repeats are compared with. */
+  median_repeat_error: Num;
+  /** The numbers above as they are shown, without their unit; "-": there is none. */
+  texts: Record<DistributionNumber, string>;
   histogram: Counts | null;
   repeatability: Repeatability | null;
   repeatability_reason: string | null;
@@ -135,6 +137,17 @@ export interface ParameterSummary {
   outliers_total: number;
   trend: Trend | null;
 }
+
+type DistributionNumber =
+  | 'median'
+  | 'mean'
+  | 'std_dev'
+  | 'minimum'
+  | 'maximum'
+  | 'lower_quartile'
+  | 'upper_quartile'
+  | 'median_std_error'
+  | 'median_repeat_error';
 
 /** Bars of equal width. below, above: number of runs outside the bars. */
 export interface Counts {
@@ -160,6 +173,7 @@ export interface Repeatability {
   verdict: Verdict;
   has_enough_runs: boolean;
   text: string;
+  texts: { chi2: string; scatter_ratio: string; p: string; between_std_dev: string };
   rows: GroupRow[];
 }
 
@@ -174,13 +188,16 @@ export interface GroupRow {
   scatter_interval95: [number, number];
   p: Num;
   disagrees: boolean;
+  /** weighted_mean: with its error. */
+  texts: { weighted_mean: string; scatter_ratio: string; scatter_interval95: string; p: string };
 }
 
 export interface Outlier {
   id: string;
   group: string | null;
   estimate: Num;
-  std_error: Num;
+  /** Value ± standard error. */
+  text: string;
   z: Num;
 }
 
@@ -191,6 +208,8 @@ export interface Trend {
   std_error: Num;
   p: Num;
   text: string;
+  /** slope: with its error and unit. */
+  texts: { slope: string; p: string };
   points: TrendRun[];
   points_total: number;
 }
@@ -199,6 +218,8 @@ export interface TrendRun {
   x: number;
   y: Num;
   std_error: Num;
+  /** Value ± standard error. */
+  text: string;
   id: string;
   group: string | null;
 }

@@ -4,17 +4,18 @@
 import { banner, warnings } from '../shared/banner';
 import { el, text } from '../shared/dom';
 import { keyFigure } from '../shared/key_figure';
+import { numberText } from '../shared/prose';
 import { section } from '../shared/section';
 import { wordsOf } from '../shared/units';
 import { headline, judgedOf, worst } from './headline';
 import { disagreementText } from './outliers_section';
 import { parametersOf, shownModel, type View } from './view';
-import { countText, ratioText, shareText } from './words';
+import { countText, shareText } from './words';
 
 function scatterFigure(view: View): HTMLElement | null {
   const most = worst(judgedOf(view));
   if (!most || most.repeatability.scatter_ratio === null) return null;
-  return keyFigure(['largest scatter'], `${ratioText(most.repeatability.scatter_ratio)} × the errors`, [
+  return keyFigure(['largest scatter'], `${numberText(most.repeatability.texts.scatter_ratio)} × the errors`, [
     `${wordsOf(most.name)}; 1: as much as the errors predict`,
   ]);
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Formats numbers of a summary. */
 
-import type { Num } from '../shared/result_types';
-import { errorText, fixed, pdgRounding, rounded, significant } from '../shared/rounding';
+import { numberText } from '../shared/prose';
 import { spacedUnit } from '../shared/units';
 
 const kThinSpace = '\u202f';
@@ -24,19 +23,6 @@ export function shareText(count: number, total: number): string {
   return `${Math.min(99.9, percent).toFixed(1)} %`;
 }
 
-/** A value with the decimals of its error or spread; with six digits if there is none. */
-export function valueTo(value: Num, error: Num, unit = ''): string {
-  if (value === null) return '–';
-  const text = error !== null && error > 0 ? rounded(value, pdgRounding(value, error)) : significant(value, 6);
-  return text + spacedUnit(unit);
-}
-
-/** A spread or an error, rounded like an error. */
-export const spreadText = (spread: Num, unit = ''): string =>
-  spread === null ? '–' : errorText(spread, null, null) + spacedUnit(unit);
-
-/** Ratio of scatter to error bars: "1.03", "12.4". */
-export function ratioText(ratio: Num): string {
-  if (ratio === null) return '–';
-  return ratio < 99.95 ? fixed(ratio, ratio < 9.995 ? 2 : 1) : significant(ratio, 3);
-}
+/** A number of the JSON with its unit. */
+export const withUnitOf = (text: string, unit: string): string =>
+  text === '-' ? numberText(text) : numberText(text) + spacedUnit(unit);

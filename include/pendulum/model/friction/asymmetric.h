@@ -5,8 +5,14 @@
 
 namespace pendulum {
 
-inline constexpr ParameterInfo kAsymmetry{
-    "asymmetry", "α", "1", "1", -1.0, 1.0, "share by which dry friction is larger towards positive angles"};
+inline constexpr ParameterInfo kAsymmetry{"asymmetry",
+                                          "α",
+                                          "1",
+                                          "1",
+                                          -1.0,
+                                          1.0,
+                                          "share by which dry friction is larger towards positive angles",
+                                          "asymmetry of friction"};
 
 /// Viscous friction, and dry friction that depends on the direction, as cables and brushes cause:
 /// T(ω) = b ω + s τ_c (1 + s α).  MODEL.md eq. (2.8).

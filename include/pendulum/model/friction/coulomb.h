@@ -5,7 +5,8 @@
 
 namespace pendulum {
 
-inline constexpr ParameterInfo kCoulomb{"coulomb", "τ_c", "N m", "1", 0.0, kUnbounded, "Coulomb (dry) friction torque"};
+inline constexpr ParameterInfo kCoulomb{
+    "coulomb", "τ_c", "N m", "1", 0.0, kUnbounded, "Coulomb (dry) friction torque", "dry friction"};
 
 /// Viscous and dry friction:  T(ω) = b ω + s τ_c,  s = sign ω.  MODEL.md eq. (2.5).
 struct CoulombFriction {

@@ -16,7 +16,8 @@ inline constexpr ParameterInfo kPreslidingAngle{"presliding_angle",
                                                 "rad",
                                                 1e-4,
                                                 kUnbounded,
-                                                "angle over which dry friction builds up after a reversal"};
+                                                "angle over which dry friction builds up after a reversal",
+                                                "presliding angle"};
 
 /// Viscous friction, and dry friction that builds up over an angle after each reversal, as bristles that bend before
 /// they slide:  T = b ω + τ_c u,  u' = (ω - |ω| u) / θ_p.  MODEL.md eq. (2.10). P. R. Dahl, "A solid friction model",

@@ -6,7 +6,7 @@
 namespace pendulum {
 
 inline constexpr ParameterInfo kDrag{
-    "drag", "c", "N m s^2/rad^2", "s^2", 0.0, kUnbounded, "quadratic (air) drag coefficient"};
+    "drag", "c", "N m s^2/rad^2", "s^2", 0.0, kUnbounded, "quadratic (air) drag coefficient", "air drag"};
 
 /// Viscous friction, dry friction and air drag:  T(ω) = b ω + s (τ_c + c ω²),  s = sign ω.  MODEL.md eq. (2.6).
 struct DragFriction {

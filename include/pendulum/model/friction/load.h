@@ -8,8 +8,14 @@
 
 namespace pendulum {
 
-inline constexpr ParameterInfo kLoadFriction{
-    "load_friction", "τ_l", "N m", "1", 0.0, kUnbounded, "dry friction torque under the pendulum's weight alone"};
+inline constexpr ParameterInfo kLoadFriction{"load_friction",
+                                             "τ_l",
+                                             "N m",
+                                             "1",
+                                             0.0,
+                                             kUnbounded,
+                                             "dry friction torque under the pendulum's weight alone",
+                                             "dry friction under the weight"};
 
 /// Viscous friction, and dry friction in proportion to the load of the bearing, which is N times the weight:
 /// T = b ω + s τ_l |N|,  N = cos θ + (I_O/G) ω².  MODEL.md eq. (2.11).

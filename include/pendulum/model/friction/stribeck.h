@@ -10,14 +10,15 @@
 namespace pendulum {
 
 inline constexpr ParameterInfo kStiction{
-    "stiction", "τ_s", "N m", "1", 0.0, kUnbounded, "dry friction torque at rest, at least coulomb"};
+    "stiction", "τ_s", "N m", "1", 0.0, kUnbounded, "dry friction torque at rest, at least coulomb", "static friction"};
 inline constexpr ParameterInfo kStribeckRate{"stribeck_rate",
                                              "ω_s",
                                              "rad/s",
                                              "rad/s",
                                              1e-6,
                                              kUnbounded,
-                                             "rate scale on which friction falls from stiction to coulomb"};
+                                             "rate scale on which friction falls from stiction to coulomb",
+                                             "Stribeck rate"};
 
 /// Viscous friction, and dry friction that increases towards rest:
 /// T(ω) = b ω + s (τ_c + (τ_s - τ_c) exp(-(ω/ω_s)²)), τ_s >= τ_c.  MODEL.md eq. (2.7).

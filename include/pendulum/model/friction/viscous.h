@@ -10,7 +10,7 @@
 namespace pendulum {
 
 inline constexpr ParameterInfo kViscous{
-    "viscous", "b", "N m s/rad", "s", 0.0, kUnbounded, "viscous friction coefficient"};
+    "viscous", "b", "N m s/rad", "s", 0.0, kUnbounded, "viscous friction coefficient", "viscous friction"};
 
 /// Viscous friction alone:  T(ω) = b ω.  MODEL.md eq. (2.4).
 struct ViscousFriction {

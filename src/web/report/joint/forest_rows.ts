@@ -6,20 +6,19 @@ import type { Homogeneity, Parameter, SharedAgreement } from '../../shared/resul
 
 const kTwoSided95 = 1.96;
 
-type Estimate = Pick<ForestRow, 'estimate' | 'std_error' | 'interval95'>;
-const pick = ({ estimate, std_error, interval95 }: Estimate): Estimate => ({ estimate, std_error, interval95 });
+type Estimate = Pick<ForestRow, 'estimate' | 'text' | 'interval95'>;
+const pick = ({ estimate, text, interval95 }: Estimate): Estimate => ({ estimate, text, interval95 });
 
 function recordingRows(agreement: SharedAgreement, outliers: readonly number[]): ForestRow[] {
-  return agreement.recordings.map(({ estimate, std_error, z }, k) => {
+  return agreement.recordings.map(({ estimate, std_error, text }, k) => {
     const reach = estimate !== null && std_error !== null ? kTwoSided95 * std_error : null;
     return {
       kind: 'recording',
       label: `recording ${k + 1}`,
       disagrees: outliers.includes(k + 1),
       estimate,
-      std_error,
+      text,
       interval95: estimate !== null && reach !== null ? [estimate - reach, estimate + reach] : null,
-      z,
     };
   });
 }
@@ -29,7 +28,7 @@ export function forestRows({ parameters, outliers }: Homogeneity, name: string, 
   const agreement = parameters[name];
   const scatter = agreement.random_effects;
   const rows = recordingRows(agreement, outliers);
-  const common = { disagrees: false, z: null };
+  const common = { disagrees: false };
   if (joint && joint.estimate !== null)
     rows.push({ ...common, ...pick(joint), kind: 'joint', label: 'joint fit' });
   if (scatter && scatter.mean !== null)

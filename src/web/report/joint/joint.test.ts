@@ -12,6 +12,7 @@ const parameter = (estimate: Num, error: Num = null): Parameter =>
   ({
     estimate,
     std_error: error,
+    text: `${estimate} ± ${error}`,
     interval95: estimate === null || error === null ? null : [estimate - 2 * error, estimate + 2 * error],
     unit: 's',
   }) as Parameter;
@@ -19,8 +20,8 @@ const parameter = (estimate: Num, error: Num = null): Parameter =>
 function agreement(runs: [Num, Num][], mean: Num = 2): SharedAgreement {
   return {
     unit: 's',
-    random_effects: { mean, std_error: 0.2, interval95: [1.5, 2.5] },
-    recordings: runs.map(([estimate, std_error]) => ({ estimate, std_error, z: 0 })),
+    random_effects: { mean, text: '2.0 ± 0.2', interval95: [1.5, 2.5] },
+    recordings: runs.map(([estimate, std_error]) => ({ estimate, std_error, text: `${estimate} ± ${std_error}` })),
   };
 }
 
@@ -49,7 +50,7 @@ describe('the forest plot', () => {
     expect(rows[3]).toMatchObject({ estimate: 2, interval95: [1.9, 2.1] });
     expect(rows[4]).toMatchObject({ estimate: 2, interval95: [1.5, 2.5] });
     expect(forestSentence('moment of inertia', 's', rows)).toBe(
-      'Forest plot of the moment of inertia in s: recording 1 1.90 ± 0.10, recording 2 2.00 ± 0.10, joint fit 2.00 ± 0.05 and random effects 2.00 ± 0.20.',
+      'Forest plot of the moment of inertia in s: recording 1 1.9 ± 0.1, recording 2 2 ± 0.1, joint fit 2 ± 0.05 and random effects 2.0 ± 0.2.',
     );
   });
 

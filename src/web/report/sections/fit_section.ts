@@ -53,9 +53,9 @@ function residualUnits(one: OneRecording, samples: Samples): ResidualUnit[] {
   const degrees = inDegrees(samples.unit);
   if (degrees)
     units.push({ value: 'degrees', label: degrees.unit, axis: `residual [${degrees.unit}]`, factor: degrees.factor });
-  const sigma = withUnit(fit?.noise, 'sigma')?.value;
+  const sigma = withUnit(fit?.noise, 'sigma');
   if (sigma) units.push({ value: 'sigma', label: 'σ', axis: 'residual [σ]', factor: 1 / sigma });
-  const level = withUnit(one.data, 'resolution')?.value;
+  const level = withUnit(one.data, 'resolution');
   if (level) units.push({ value: 'counts', label: 'counts', axis: 'residual [counts]', factor: 1 / level });
   return units;
 }
@@ -150,7 +150,7 @@ class FitPlots {
     private readonly samples: Samples,
   ) {
     this.view = sharedView(one, samples);
-    this.sigma = withUnit(shownFitOf(one)?.noise, 'sigma')?.value ?? null;
+    this.sigma = withUnit(shownFitOf(one)?.noise, 'sigma') ?? null;
     this.traces = makeTraces(one, samples);
     this.units = residualUnits(one, samples);
     this.unit = this.units[0];

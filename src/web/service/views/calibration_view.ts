@@ -3,7 +3,8 @@
 
 import { curveText } from '../../report/sections/provenance_section';
 import { button, details, el, text } from '../../shared/dom';
-import { fixed, plusMinus, significant } from '../../shared/rounding';
+import { numberText } from '../../shared/prose';
+import { fixed, significant } from '../../shared/rounding';
 import { save } from '../../shared/save';
 import { section } from '../../shared/section';
 import { scrollBox, table } from '../../shared/table';
@@ -38,14 +39,8 @@ const kOrders: [string, string][] = [
   ['5', '5'],
 ];
 
-function coefficientTable({ calibration }: CalibrationAnswer): HTMLElement {
-  const one = calibration.input === 'volts' ? 'V' : 'count';
-  const covariance = calibration.covariance as number[][] | null;
-  const rows = calibration.coefficients.map((c, k) => {
-    const unit = unitText(calibration.angle_unit) + (k === 0 ? '' : unitText(`/${one}${k === 1 ? '' : `^${k}`}`));
-    const variance = covariance?.[k]?.[k] ?? 0;
-    return [`c${k}`, `${plusMinus(c, variance > 0 ? Math.sqrt(variance) : null)} ${unit}`];
-  });
+function coefficientTable({ coefficients }: CalibrationAnswer): HTMLElement {
+  const rows = coefficients.map(({ name, text: value, unit }) => [name, `${numberText(value)} ${unitText(unit)}`]);
   return table(
     'Coefficients of the curve',
     [{ head: 'Coefficient' }, { head: 'Value ± standard error', kind: 'number' }],

@@ -45,6 +45,10 @@ export const parameterNames = (all: readonly Compared[]): string[] => [
 
 export const parameterOf = (one: Compared, name: string): Parameter | null => fitOf(one)?.parameters[name] ?? null;
 
+/** Whether this is a parameter of the pendulum; all others are of the start and of the sensor. */
+export const isShared = (all: readonly Compared[], name: string): boolean =>
+  all.some((one) => fitOf(one)?.shared.includes(name));
+
 /**
  * (b - a) over its standard error, for independent recordings. Null if the units differ, a value is missing or neither
  * has an error.
@@ -81,10 +85,10 @@ export function comparedRows(all: readonly Compared[], name: string): ForestRow[
   const rows = all.flatMap((one, k): ForestRow[] => {
     const parameter = parameterOf(one, name);
     if (!parameter || parameter.unit !== unit || parameter.estimate === null) return [];
-    const { estimate, std_error, interval95 } = parameter;
+    const { estimate, text, interval95 } = parameter;
     const { colour } = recordingMark(k);
     return [
-      { kind: 'recording', label: labelOf(one, k), disagrees: false, estimate, std_error, interval95, z: null, colour },
+      { kind: 'recording', label: labelOf(one, k), disagrees: false, estimate, text, interval95, colour },
     ];
   });
   return rows.length > 1 ? rows : [];

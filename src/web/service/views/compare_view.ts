@@ -22,6 +22,7 @@ import {
   comparedRows,
   differenceInErrors,
   fitOf,
+  isShared,
   kBest,
   parameterNames,
   parameterOf,
@@ -32,7 +33,7 @@ import {
   type Compared,
 } from './compare';
 import { localTime } from './fit_rows';
-import { kCircumstances, valueCell } from './parameter_cells';
+import { valueCell } from './parameter_cells';
 
 const number = 'number' as const;
 
@@ -76,7 +77,7 @@ function parameterRow(all: Compared[], name: string): Cell[] {
     const z = differenceInErrors(parameterOf(first, name), parameter);
     const value = valueCell(parameter);
     const cells = Array.isArray(value) ? value : [value];
-    return k === 0 || kCircumstances.has(name)
+    return k === 0 || !isShared(all, name)
       ? cells
       : [...cells, el('small', { class: Math.abs(z ?? 0) > 3 ? 'no difference' : 'difference' }, differenceWords(z))];
   });
@@ -94,7 +95,7 @@ function parameterTable(all: Compared[]): HTMLElement {
 
 function forests(all: Compared[]): HTMLElement[] {
   return parameterNames(all).flatMap((name) => {
-    const rows = kCircumstances.has(name) ? [] : comparedRows(all, name);
+    const rows = !isShared(all, name) ? [] : comparedRows(all, name);
     if (rows.length === 0) return [];
     const unit = all.map((one) => parameterOf(one, name)?.unit).find((found) => found !== undefined) ?? '';
     const plot = forestPlot(forestSentence(wordsOf(name), unitText(unit), rows), rows, wholeRange(rows));

@@ -3,8 +3,8 @@
 
 import { append, el, symbolElement, type Child } from '../../shared/dom';
 import { mainFit } from '../../shared/main_fit';
-import { typeset } from '../../shared/prose';
-import { plusMinus, windowText } from '../../shared/rounding';
+import { numberText, typeset } from '../../shared/prose';
+import { windowText } from '../../shared/rounding';
 import { symbolOf, unitText } from '../../shared/units';
 import { fitPath } from '../routes';
 import type { FitItem, ItemModel } from '../types';
@@ -27,7 +27,7 @@ export function parameterWords(model: ItemModel | null, name: string): { value: 
   if (!parameter || parameter.estimate === null) return { value: '–', unit: '' };
   const overG = symbolOf(name, parameter.unit)?.endsWith('/G') ? 'G' : '';
   const unit = [overG, unitText(parameter.unit)].filter((part) => part !== '').join('\u00a0');
-  return { value: plusMinus(parameter.estimate, parameter.total_std_error ?? parameter.std_error), unit };
+  return { value: numberText(parameter.text), unit };
 }
 
 function parameterCell(model: ItemModel | null, name: string, label: string): HTMLElement {
