@@ -15,9 +15,9 @@ namespace pendulum {
 /// What one kind of source does to the estimates. Both matrices are P x P in products of the problem's units.
 struct SystematicCovariance {
   ErrorSource kind;
-  Eigen::MatrixXd of_estimates;   ///< Of the reported parameters; zero rows for fixed ones.
-  Eigen::MatrixXd of_ratios;      ///< Of the parameters over the restoring torque: the error of G belongs to no ratio.
-  std::vector<BudgetLine> lines;  ///< What it consists of. Lines that the readings inform are not independent.
+  Eigen::MatrixXd of_estimates;  ///< Of the reported parameters; zero rows for fixed ones.
+  Eigen::MatrixXd of_ratios;     ///< Of the parameters over the restoring torque: the error of G belongs to no ratio.
+  std::vector<BudgetLine> lines = {};  ///< What it consists of. Lines that the readings inform are not independent.
 };
 
 /// The covariances that errors of rig, clocks, calibrations and sensors cause, one for each kind of source that has an
