@@ -39,16 +39,22 @@ std::string_view TypeName(const BudgetLine& line) {
   return line.name == kNoise || EvaluationTypeOf(line.source) == EvaluationType::kA ? "A" : "B";
 }
 
-/// The parameters that a reader asks for first.
-std::vector<std::size_t> PhysicalOf(const FitReport& fit) {
-  const std::vector<ParameterInfo> physical = PhysicalParameters(fit.model);
+/// The parameters that have an error.
+std::vector<std::size_t> WithErrors(const FitReport& fit) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (fit.parameters[i].std_error &&
-        std::ranges::find(physical, fit.parameters[i].info.name, &ParameterInfo::name) != physical.end()) {
-      places.push_back(i);
-    }
+    if (fit.parameters[i].std_error) places.push_back(i);
   }
+  return places;
+}
+
+/// Inertia and friction that have an error.
+std::vector<std::size_t> PhysicalWithErrors(const FitReport& fit) {
+  const std::vector<ParameterInfo> physical = PhysicalParameters(fit.model);
+  std::vector<std::size_t> places = WithErrors(fit);
+  std::erase_if(places, [&](std::size_t i) {
+    return std::ranges::find(physical, fit.parameters[i].info.name, &ParameterInfo::name) == physical.end();
+  });
   return places;
 }
 
@@ -107,15 +113,15 @@ std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
 
 Sections BudgetSections(const FitReport& fit) {
   const std::vector<BudgetLine> lines = BudgetOf(fit);
-  if (lines.empty()) return {};
+  if (lines.size() < 2) return {};
   Table table{{{"± by"}, {"its size", true}, {"type"}}};
-  const std::vector<std::size_t> physical = PhysicalOf(fit);
-  for (const std::size_t i : physical) table.columns.push_back({std::string(fit.parameters[i].info.name), true});
+  const std::vector<std::size_t> places = WithErrors(fit);
+  for (const std::size_t i : places) table.columns.push_back({std::string(fit.parameters[i].info.name), true});
   table.columns.push_back({"where the size comes from"});
   for (const BudgetLine& line : lines) {
     std::vector<std::string> row = {InWords(line.name), line.std_dev ? PlainSizeText(*line.std_dev, line.unit) : "",
                                     std::string(TypeName(line))};
-    for (const std::size_t i : physical) {
+    for (const std::size_t i : places) {
       const double part = line.parts[static_cast<Eigen::Index>(i)];
       row.push_back(part > 0 ? NumberText(part, 2) : "");
     }
@@ -123,7 +129,7 @@ Sections BudgetSections(const FitReport& fit) {
     table.rows.push_back(std::move(row));
   }
   std::vector<std::string> total = {"total", "", ""};
-  for (const std::size_t i : physical) {
+  for (const std::size_t i : places) {
     const ParameterEstimate& parameter = fit.parameters[i];
     total.push_back(NumberText(*TotalStdError(parameter.std_error, parameter.systematic), 2));
   }
@@ -162,7 +168,7 @@ std::string LargestErrorText(const FitReport& fit) {
   for (const BudgetLine& line : BudgetOf(fit)) {
     const auto* const remedy = std::ranges::find(kRemedies, line.name, &Remedy::name);
     if (remedy == kRemedies.end()) continue;
-    for (const std::size_t i : PhysicalOf(fit)) {
+    for (const std::size_t i : PhysicalWithErrors(fit)) {
       const ParameterEstimate& parameter = fit.parameters[i];
       const double total = *TotalStdError(parameter.std_error, parameter.systematic);
       const double part = line.parts[static_cast<Eigen::Index>(i)];
@@ -170,9 +176,9 @@ std::string LargestErrorText(const FitReport& fit) {
       const double shown = std::max(left, *parameter.std_error);
       if (!(total > best * shown)) continue;
       best = total / shown;
-      text = "Largest error of " + std::string(parameter.info.name) + ": " + InWords(line.name) +
-             (line.is_assumed ? " (" + line.origin + ")" : "") + "; " + std::string(remedy->text) + ": " +
-             RelativeText(total, parameter.estimate) + " becomes " + RelativeText(shown, parameter.estimate) + ".";
+      text = "Largest error: " + InWords(line.name) + "; " + std::string(remedy->text) + ": " +
+             std::string(parameter.info.name) + " " + RelativeText(total, parameter.estimate) + " becomes " +
+             RelativeText(shown, parameter.estimate) + ".";
     }
   }
   return text;

@@ -54,6 +54,7 @@ Json ParameterJson(const ParameterEstimate& parameter) {
                   .Set("interval95", IntervalJson(parameter.lower95, parameter.upper95))
                   .Set("systematic_std_error", NumberOrNull(parameter.systematic.Total()))
                   .Set("total_std_error", NumberOrNull(TotalStdError(parameter.std_error, parameter.systematic)))
+                  .Set("total_interval95", TotalIntervalJson(parameter))
                   .Set("error_budget", ErrorBudgetJson(parameter.std_error, parameter.systematic))
                   .Set("unit", Json(parameter.unit))
                   .Set("fixed", Json(parameter.fixed))

@@ -171,31 +171,6 @@ Table EstimateTable(const FitReport& fit) {
   return table;
 }
 
-/// The total standard error of each parameter, and its parts by source.
-void AddErrorSources(const FitReport& fit, Section& section) {
-  std::vector<ErrorSource> sources;
-  for (const ErrorSource source : kErrorSources) {
-    const auto has = [&](const ParameterEstimate& parameter) { return parameter.systematic.Of(source) > 0; };
-    if (std::ranges::any_of(fit.parameters, has)) sources.push_back(source);
-  }
-  if (sources.empty()) return;
-  Table table{{{"± by source"}, {"unit"}, {"total", true}, {"noise", true}}};
-  for (const ErrorSource source : sources) table.columns.push_back({std::string(ErrorSourceName(source)), true});
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    const auto total = TotalStdError(parameter.std_error, parameter.systematic);
-    if (!total) continue;
-    Row row = {std::string(parameter.info.name), parameter.unit, NumberText(*total, 2),
-               NumberText(*parameter.std_error, 2)};
-    for (const ErrorSource source : sources) {
-      const double part = parameter.systematic.Of(source);
-      row.push_back(part > 0 ? NumberText(part, 2) : "");
-    }
-    table.rows.push_back(std::move(row));
-  }
-  section.AddText("Standard errors and intervals above are of noise alone. The total error and its parts:");
-  section.Add(std::move(table));
-}
-
 constexpr const char* kNoEstimates = "These values are not estimates, because nothing was fitted.";
 
 // --- derived quantities ----------------------------------------------------------------------------------------------
@@ -238,7 +213,9 @@ Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, con
   ExplainMissingErrors(fit, section);
   if (!fit.std_error_method.empty()) section.AddText("Standard errors: " + fit.std_error_method + ".");
   if (!fit.interval_method.empty()) section.AddText("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
-  AddErrorSources(fit, section);
+  const auto is_systematic = [](const ParameterEstimate& parameter) { return parameter.systematic.Total() > 0; };
+  if (std::ranges::any_of(fit.parameters, is_systematic))
+    section.AddText("Standard errors and intervals above are of noise alone.");
   DescribeIdentifiability(fit, section);
   return section.AddText(check != nullptr ? "" : InertiaText(fit, rig));
 }

@@ -489,7 +489,7 @@ void AddSensors(const Identification& identification, std::vector<std::string>& 
 
 /// What one swing cannot tell, unless the rig's own inertia agrees or disagrees with the fit.
 std::string UntoldText(const std::optional<RigVerdict>& rig) {
-  return rig && rig->z ? "" : "firm support, no spring or gear: else inertia is an effective one (--details)";
+  return rig && rig->z ? "" : "firm support, no spring, no gear (else an effective inertia)";
 }
 
 std::vector<std::string> AssumptionsOf(const std::vector<Warning>& warnings) {
@@ -595,9 +595,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (!identification.is_joint()) SetRigVerdict(verdict, summary);
   AddOnce(UntoldText(verdict), summary.assumptions);
   summary.remarks = RemarksText(fit);
-  if (const std::string largest = LargestErrorText(fit); !largest.empty()) {
-    summary.remarks += (summary.remarks.empty() ? "" : " ") + largest;
-  }
+  summary.advice = LargestErrorText(fit);
   if (const std::string untested = UntestedText(constancy, fit); !untested.empty()) {
     summary.remarks += (summary.remarks.empty() ? "" : " ") + untested;
   }
@@ -674,6 +672,7 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
           {"units", summary.units},
           {"textbook", summary.textbook},
           {"remarks", WithBlanks(summary.remarks)},
+          {"advice", WithBlanks(summary.advice)},
           {"assumptions", summary.assumptions},
           {"warnings", messages}};
 }

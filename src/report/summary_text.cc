@@ -27,13 +27,16 @@ enum class Folding {
   kNames,             // Warnings that are not serious are only named.
   kEquation,          // No equation: the table has its numbers.
   kParagraphs,        // Window and verdict are in one paragraph, assumptions and warnings too.
+  kAdvice,            // Nothing on the largest error.
   kReasons,           // The textbook's values have no reasons.
-  kTextbook           // No textbook's values.
+  kTextbook,          // No textbook's values.
+  kTogether           // Remarks and assumptions are in one paragraph.
 };
 
-constexpr std::array kFoldings = {
-    Folding::kNone,  Folding::kSensorParameters, Folding::kAsides,     Folding::kWarnings, Folding::kRemarks,
-    Folding::kNames, Folding::kEquation,         Folding::kParagraphs, Folding::kReasons,  Folding::kTextbook};
+constexpr std::array kFoldings = {Folding::kNone,     Folding::kSensorParameters, Folding::kAsides,
+                                  Folding::kWarnings, Folding::kRemarks,          Folding::kNames,
+                                  Folding::kEquation, Folding::kParagraphs,       Folding::kAdvice,
+                                  Folding::kReasons,  Folding::kTextbook,         Folding::kTogether};
 
 /// Adds a sentence or a list item to a text.
 void Join(const std::string& more, std::string_view separator, std::string& text) {
@@ -165,9 +168,15 @@ std::string WarningsText(const WarningTexts& warnings) {
   return (warnings.sentences.size() + warnings.names.size() > 1 ? "Warnings: " : "Warning: ") + text + ".";
 }
 
-void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, Section& section) {
+/// remarks: the paragraph before them.
+void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, std::string remarks, Section& section) {
   const WarningTexts warnings = TextsOf(summary, folding);
   std::string text = AssumedText(summary);
+  if (folding >= Folding::kTogether) {
+    Join(text, " ", remarks);
+    text = std::exchange(remarks, "");
+  }
+  section.AddText(remarks);
   if (folding >= Folding::kParagraphs) {
     Join(WarningsText(warnings), " ", text);
     section.AddText(text, warnings.sentences.empty() ? Emphasis::kNone : Emphasis::kCaution);
@@ -196,9 +205,11 @@ std::string TextbookText(const FitSummary& fit, Folding folding) {
   return folding >= Folding::kReasons ? WithoutAsides(fit.textbook) : fit.textbook;
 }
 
-void AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
+/// Adds the remarks as paragraphs, or returns them as one.
+std::string AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
   std::string text;
-  for (std::string part : {OmittedText(fit, folding), fit.remarks, DerivedText(fit), TextbookText(fit, folding)}) {
+  for (std::string part : {OmittedText(fit, folding), fit.remarks, folding < Folding::kAdvice ? fit.advice : "",
+                           DerivedText(fit), TextbookText(fit, folding)}) {
     if (folding < Folding::kRemarks) {
       section.AddText(part);
       continue;
@@ -206,7 +217,7 @@ void AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
     if (!part.empty() && !part.ends_with('.')) part += ".";
     Join(Capitalized(part), " ", text);
   }
-  section.AddText(text);
+  return text;
 }
 
 /// The window, the comparison of laws, and whether the law describes the readings.
@@ -227,8 +238,7 @@ Section FoldedSection(const ResultSummary& summary, Folding folding) {
   AddVerdict(summary, folding, section);
   if (!fit.parameters.empty()) section.Add(ParameterTable(fit, folding));
   if (!fit.equation.empty() && folding < Folding::kEquation) section.Add(Formula{WithUnbrokenTerms(fit.equation)});
-  AddRemarks(fit, folding, section);
-  AddAssumptionsAndWarnings(fit, folding, section);
+  AddAssumptionsAndWarnings(fit, folding, AddRemarks(fit, folding, section), section);
   return section;
 }
 

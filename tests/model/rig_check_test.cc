@@ -89,7 +89,7 @@ TEST(QuestionRig, SaysWhatNominalValuesAdd) {
   // By hand: dG/G for 1 g in M and m, 1 mm in l, and 0.015 m/s² in g: hypot(1e-3, 0.5e-3) / 0.4275, 1 / 430, 15 / 9810.
   EXPECT_THAT(QuestionRig(Textbook("0.380", "0.095", "0.43")),
               ElementsAre(Is("rig_errors_assumed",
-                             "scales ±1 g, a ruler ±1 mm and g ±0.015; all values of the rig "
+                             "scales ±1 g, a ruler ±1 mm, g ±0.015; all values of the rig "
                              "together add a systematic error of 0.38 % to inertia")));
   // 1 mm of 420 mm is 0.24 % of g.
   EXPECT_THAT(QuestionRig(RigOf(R"({"length": 0.42})")),

@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr const char* kRodAndBob = R"({"bob_mass": 0.4, "rod_mass": 0.1, "rod_length": 0.5, "gravity": 9.8})";
+constexpr const char* kRodAndBob = R"({"bob_mass": 0.4, "rod_mass": {"value": 0.1, "std_dev": 0},
+                               "rod_length": {"value": 0.5, "std_dev": 0}, "gravity": {"value": 9.8, "std_dev": 0}})";
 
 TEST(ParseRigWith, ReplacesValuesOfTheText) {
   std::vector<Warning> warnings;
@@ -46,7 +47,9 @@ TEST(ParseRigWith, RefusesAWrongText) {
 
 TEST(RigOfValues, AssumesGravityIfItIsNeeded) {
   std::vector<Warning> warnings;
-  const Json values = {{"bob_mass", 0.4}, {"rod_mass", 0.1}, {"rod_length", 0.5}};
+  const Json values = {{"bob_mass", {{"value", 0.4}, {"std_dev", 0}}},
+                       {"rod_mass", {{"value", 0.1}, {"std_dev", 0}}},
+                       {"rod_length", {{"value", 0.5}, {"std_dev", 0}}}};
   const auto rig = RigOfValues(values, warnings);
   ASSERT_TRUE(rig) << rig.error().message();
   EXPECT_NEAR(rig->gravity_torque.value, 0.45 * 9.806 * 0.5, 1e-12);

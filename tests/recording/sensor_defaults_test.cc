@@ -34,11 +34,15 @@ SensorErrors Assumed(const Recording& recording, const std::string& statement = 
   return SensorErrorsOf(recording, 0, 2, given);
 }
 
-/// A table with a header line and, above it, comments.
-Recording Read(const std::string& head, int rows = 40) {
+enum class Times { kOnGrid, kMeasured };
+
+/// A table with a header line and, above it, comments. Measured times are up to 2 units late.
+Recording Read(const std::string& head, Times times = Times::kOnGrid) {
+  constexpr int kRows = 40;
   std::string text = head;
-  for (int i = 0; i < rows; ++i) {
-    text += std::to_string(20 * i) + "," + std::to_string(500 + (i % 2 == 0 ? 200 : -200)) + "\n";
+  for (int i = 0; i < kRows; ++i) {
+    const int late = times == Times::kMeasured ? i % 3 : 0;
+    text += std::to_string(20 * i + late) + "," + std::to_string(500 + (i % 2 == 0 ? 200 : -200)) + "\n";
   }
   const Result<Recording> recording = ParseRecording(text, "run.csv");
   EXPECT_TRUE(recording) << recording.error().message();
@@ -135,7 +139,7 @@ TEST(SensorErrorsOf, HasNoErrorsOfAnIdealSensor) {
 // ---- The clock -----------------------------------------------------------------------------------------------------
 
 TEST(SensorErrorsOf, TakesTheClockFromTheSourceOfTheTimes) {
-  const auto clock = [](const std::string& head) { return Assumed(Read(head)).Of(kClock); };
+  const auto clock = [](const std::string& head) { return Assumed(Read(head, Times::kMeasured)).Of(kClock); };
   EXPECT_DOUBLE_EQ(clock("time_ms,adc_counts\n").std_dev, 0.003);
   EXPECT_EQ(clock("time_ms,adc_counts\n").SourceText(), "assumed for a ceramic resonator");
   EXPECT_DOUBLE_EQ(clock("time_us,angle_deg\n").std_dev, 0.003);
@@ -143,6 +147,15 @@ TEST(SensorErrorsOf, TakesTheClockFromTheSourceOfTheTimes) {
   EXPECT_DOUBLE_EQ(clock("time_s,angle_mrad\n").std_dev, 5e-5);
   EXPECT_DOUBLE_EQ(clock("time_s,x_px\n").std_dev, 1e-3);
   EXPECT_DOUBLE_EQ(clock("# sample_rate_hz: 50\nindex,adc_counts\n").std_dev, 0.03);
+}
+
+TEST(SensorErrorsOf, TrustsTimesOnAnExactGridLess) {
+  for (const std::string head : {"time_ms,adc_counts\n", "time_s,angle_mrad\n"}) {
+    const EffectSize clock = Assumed(Read(head, Times::kOnGrid)).Of(kClock);
+    EXPECT_DOUBLE_EQ(clock.std_dev, 0.01);
+    EXPECT_EQ(clock.SourceText(), "assumed for times on an exact grid");
+  }
+  EXPECT_DOUBLE_EQ(Assumed(Read("time_s,x_px\n", Times::kOnGrid)).Of(kClock).std_dev, 1e-3);  // frames
 }
 
 TEST(SensorErrorsOf, LeavesAStatedClockToItsOwnError) {

@@ -33,7 +33,7 @@ TEST(AreOnGrid, AcceptsCountedTimes) {
 TEST(AreOnGrid, RejectsMeasuredTimes) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(0, 1);
-  EXPECT_FALSE(AreOnGrid(Times([&](double i) { return 4e-6 * std::floor(2500 * i + uniform(random)); })));
+  EXPECT_FALSE(AreOnGrid(Times([&](double i) { return 4e-6 * std::floor(2500 * i + 2 * uniform(random)); })));
   double now = 0;
   EXPECT_FALSE(AreOnGrid(Times([&](double) { return std::floor(now += 10.1 + 0.3 * uniform(random)); })));
   EXPECT_FALSE(AreOnGrid(Times([&](double i) { return RoundedTo(1e-3, 0.01 * i + 0.002 * uniform(random)); })));

@@ -40,9 +40,9 @@ TEST(DataSections, HaveATableOnlyForSeveralRecordings) {
 
 TEST(DataSections, ShowTheRigWithItsUnits) {
   EXPECT_EQ(TextOf(ExampleIdentification(), "Rig"), R"([[Rig]]
-    name             value ± std dev  unit
-    gravity_torque   1.800 ± 0.010    N m
-    inertia         0.0760 ± 0.0005   kg m^2
+    name             value ± std dev  unit    std dev
+    gravity_torque   1.800 ± 0.010    N m     stated
+    inertia         0.0760 ± 0.0005   kg m^2  stated
 )");
 }
 

@@ -25,10 +25,11 @@ TEST(ResolutionJson, IsNullWithoutLevels) {
 TEST(ParametersJson, HasNumbersUnitsAndFlagsByName) {
   const Json parameters = ParametersJson(ExampleFit());
   EXPECT_EQ(parameters.size(), 5);
-  EXPECT_EQ(parameters["inertia"].dump(),
-            R"({"estimate":0.079,"std_error":0.00025,"interval95":[0.0785,0.0795],"systematic_std_error":0.001,)"
-            R"("total_std_error":0.001030776406404415,"error_budget":{"noise":0.00025,"rig":0.001},)"
-            R"("unit":"kg m^2","fixed":false,"at_bound":false,"text":"0.0790 ± 0.0010"})");
+  EXPECT_EQ(
+      parameters["inertia"].dump(),
+      R"({"estimate":0.079,"std_error":0.00025,"interval95":[0.0785,0.0795],"systematic_std_error":0.001,)"
+      R"("total_std_error":0.001030776406404415,"total_interval95":[0.07697726452033536,0.08102273547966464],"error_budget":{"noise":0.00025,"rig":0.001},)"
+      R"("unit":"kg m^2","fixed":false,"at_bound":false,"text":"0.0790 ± 0.0010"})");
   EXPECT_TRUE(parameters["viscous"]["systematic_std_error"].is_null());
 }
 

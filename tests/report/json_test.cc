@@ -75,8 +75,8 @@ TEST(ToJson, KeepsTheOrderOfKeysForOneRecordingAndForSeveral) {
     EXPECT_THAT(
         Keys(json["fits"][0]),
         ElementsAre("model", "status", "reason", "equation", "shared", "parameters", "derived", "covariance",
-                    "correlation", "systematic_covariance", "std_error_method", "interval_method", "identifiability",
-                    "statistics", "homogeneity", "rig_verdict", "ambiguities", "solver", "summary"));
+                    "correlation", "systematic_covariance", "budget", "std_error_method", "interval_method",
+                    "identifiability", "statistics", "homogeneity", "rig_verdict", "ambiguities", "solver", "summary"));
   }
 }
 

@@ -93,6 +93,8 @@ No result with drag: 100 iterations were not enough.
 
 Weakly identifiable: viscous.
 
+Largest error: gravity torque; weigh the pendulum held horizontal: inertia ± 1.3 % becomes ± 0.32 %.
+
 The textbook's log decrement gives I_O 0.08020 (1.5 % more), b 0.003060 (agrees).
 
 ## Warnings

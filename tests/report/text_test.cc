@@ -41,9 +41,9 @@ constexpr const char* kWholeFit = R"([[Data]]
     ends        the end of the recording
     resolution  0.00436 rad (0.25 deg), found in the values
 [[Rig]]
-    name             value ± std dev  unit
-    gravity_torque   1.800 ± 0.010    N m
-    inertia         0.0760 ± 0.0005   kg m^2
+    name             value ± std dev  unit    std dev
+    gravity_torque   1.800 ± 0.010    N m     stated
+    inertia         0.0760 ± 0.0005   kg m^2  stated
 [[Fit]]
     model   coulomb:  I_O th'' + b th' + τ_c sgn(th') + G sin th = 0
     start   held at an angle, then released
@@ -68,15 +68,22 @@ constexpr const char* kWholeFit = R"([[Data]]
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
-    Standard errors and intervals above are of noise alone. The total error and
-    its parts:
-    ± by source    unit        total    noise    rig
-    inertia        kg m^2      0.001  0.00025  0.001
-    viscous        N m s/rad  0.0005   0.0005
-    release_angle  rad        0.0002   0.0002
+    Standard errors and intervals above are of noise alone.
     viscous is weakly identifiable (its effect can be compensated by coulomb):
     let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.
+[[Error budget]]
+    ± by            its size  type  inertia  viscous  release_angle
+    noise                     A     0.00025   0.0005         0.0002
+    gravity torque  0.01 N m  B       0.001
+    total                             0.001   0.0005         0.0002
+
+    ± by            where the size comes from
+    noise           the scatter of the readings
+    gravity torque  stated in the rig
+    Standard deviations, in the units of the parameters. Type A: from the
+    statistics of readings; B: stated or assumed. What the readings say of the
+    sensor makes its lines depend on each other; the total allows for that.
 [[Derived quantities]]
     natural_frequency  4.778 ± 0.008  rad/s  [4.763, 4.793]
     damping_ratio      0.004          1
@@ -145,10 +152,10 @@ TEST(ToText, ShowsClosedFormsAfterTheFit) {
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
-  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Rig", "Fit", "Parameters", "Derived quantities",
-                                    "Correlations", "Noise and statistics", "Equation of motion", "Constancy",
-                                    "What the residuals suggest", "What one swing cannot tell", "Closed forms",
-                                    "Closed forms against the fit", "Turning points", "Warnings"));
+  EXPECT_THAT(sections, ElementsAre("Data", "Sampling", "Rig", "Fit", "Parameters", "Error budget",
+                                    "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
+                                    "Constancy", "What the residuals suggest", "What one swing cannot tell",
+                                    "Closed forms", "Closed forms against the fit", "Turning points", "Warnings"));
 }
 
 TEST(ToText, SuggestsWhatToMeasureWithoutARig) {
@@ -273,11 +280,12 @@ TEST(ToText, StartsWithTheComparisonAndListsOtherParameters) {
   for (std::size_t at = text.find("[["); at != std::string::npos; at = text.find("[[", at + 1)) {
     sections.push_back(text.substr(at + 2, text.find("]]", at) - at - 2));
   }
-  EXPECT_THAT(sections,
-              ElementsAre("Data", "Sampling", "Rig", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
-                          "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
-                          "Constancy", "What the residuals suggest", "What one swing cannot tell", "Parameters of drag",
-                          "Closed forms", "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
+  EXPECT_THAT(
+      sections,
+      ElementsAre("Data", "Sampling", "Rig", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
+                  "Error budget", "Derived quantities", "Correlations", "Noise and statistics", "Equation of motion",
+                  "Constancy", "What the residuals suggest", "What one swing cannot tell", "Parameters of drag",
+                  "Closed forms", "Closed forms against the fit of coulomb", "Turning points", "Warnings"));
 }
 
 TEST(ToText, ReplacesTerminalControlCharactersInAFileName) {
@@ -373,8 +381,8 @@ TEST(ReportSections, AreInOrder) {
   EXPECT_THAT(Titles(ReportSections(ExampleComparedJointIdentification())),
               ElementsAre("Recordings", "Data: recording 1", "Sampling: recording 1", "Data: recording 2",
                           "Sampling: recording 2", "Rig", "Comparison", "Likelihood-ratio tests", "Fit", "Parameters",
-                          "Do the recordings agree?", "Each recording's own", "Derived quantities", "Correlations",
-                          "Noise and statistics: recording 1", "Noise and statistics: recording 2",
+                          "Do the recordings agree?", "Error budget", "Each recording's own", "Derived quantities",
+                          "Correlations", "Noise and statistics: recording 1", "Noise and statistics: recording 2",
                           "Noise and statistics: all recordings", "Equation of motion", "Constancy: recording 1",
                           "What the residuals suggest: recording 1", "What the residuals suggest: recording 2",
                           "What one swing cannot tell", "Parameters of drag", "Closed forms: recording 1",
@@ -388,6 +396,7 @@ TEST(ReportSections, AreThoseOfOneRecordingForEachOfSeveral) {
   const std::vector<std::string> common = {"Rig",
                                            "Fit",
                                            "Parameters",
+                                           "Error budget",
                                            "Derived quantities",
                                            "Correlations",
                                            "Equation of motion",

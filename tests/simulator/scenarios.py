@@ -131,6 +131,13 @@ def set_stribeck(lab: Lab, rate: float, duration: float) -> None:
     lab.set_friction(stiction=2 * lab.law.coulomb, stribeck_rate=rate)
 
 
+def set_known_inertia(lab: Lab, scale: float) -> None:
+    """A rig file with G, wrong by this factor, to 0.2 %, and the true inertia to 0.3 %."""
+    torque, inertia = scale * lab.body.gravity_torque, lab.body.inertia
+    lab.rig = {"gravity_torque": {"value": torque, "std_dev": 0.002 * torque},
+               "inertia": {"value": inertia, "std_dev": 0.003 * inertia}}
+
+
 def set_duration(lab: Lab, seconds: float) -> None:
     """A recording of this length."""
     lab.duration = seconds
@@ -231,6 +238,12 @@ add("mounting", "stiffness_2", "torsional stiffness of 2 % of G", "inherent", SP
     lambda lab: lab.set("body", spring=0.02 * lab.body.gravity_torque), is_core=True)
 add("mounting", "length_10", "length wrong by 10 % in the rig file", "inherent", LENGTH,
     lambda lab: setattr(lab, "rig", RIG | {"rod_length": 1.1 * RIG["rod_length"]}), is_core=True)
+
+# The same with a geometry that is known: it shows that something is wrong.
+add("mounting", "stiffness_known", "torsional stiffness of 2 % of G, and the rig file gives the inertia", "inherent", SPRING,
+    lambda lab: (lab.set("body", spring=0.02 * lab.body.gravity_torque), set_known_inertia(lab, 1.0)))
+add("mounting", "length_known", "length wrong by 10 % in a G of 0.2 %, and the rig file gives the inertia", "inherent", LENGTH,
+    lambda lab: set_known_inertia(lab, 1.1))
 
 add("friction", "stribeck_unseen", "Stribeck zone of 1 rad/s, fitted as coulomb", "inherent", LAW,
     lambda lab: lab.set_friction(stiction=1.5 * lab.law.coulomb, stribeck_rate=1.0), is_core=True)

@@ -22,7 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "include/pendulum/report/result.schema.json").read_text(encoding="utf-8"))
 EXAMPLE = json.loads((ROOT / "tests/report/result_example.json").read_text(encoding="utf-8"))
 # Keys that earlier results do not have, or that some results do not need.
-ADDED = ("summary", "total_std_error", "error_budget", "sensor", "rig_verdict", "ambiguities", "suspicions",
+ADDED = ("summary", "budget", "total_interval95", "advice", "total_std_error", "error_budget", "sensor", "rig_verdict", "ambiguities", "suspicions",
          "unseen_friction_std_error", "text_in_degrees")
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 RECORDING = ["recordings", 0]

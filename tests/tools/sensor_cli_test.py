@@ -52,7 +52,7 @@ class SensorTest(unittest.TestCase):
         sensor, codes = self.fit("run.csv")
         self.assertEqual(sensor["kind"], "angle sensor")
         self.assertEqual(sensor["gain"], {"std_dev": 0.01, "unit": "1", "source": "assumed for an angle sensor"})
-        self.assertEqual(sensor["clock"], {"std_dev": 5e-5, "unit": "1", "source": "assumed for a quartz crystal"})
+        self.assertEqual(sensor["clock"], {"std_dev": 0.01, "unit": "1", "source": "assumed for times on an exact grid"})
         self.assertEqual(sensor["lag"]["unit"], "s")
         self.assertEqual(sensor["eccentric_sine"]["unit"], "rad")
         self.assertAlmostEqual(sensor["eccentric_sine"]["std_dev"], math.radians(0.25), places=12)

@@ -16,15 +16,15 @@ namespace pendulum {
 std::vector<BudgetLine> BudgetOf(const FitReport& fit);
 
 /// The error budget as a table, a line each: its size, its type in the sense of the GUM (A: from statistics, B: stated
-/// or assumed), where the size comes from, and what it adds to the inertia and each friction. Empty without lines.
+/// or assumed), where the size comes from, and what it adds to each parameter that has an error. Empty if noise is the
+/// only line.
 Sections BudgetSections(const FitReport& fit);
 
 /// The same as JSON, with the parts of all parameters.
 nlohmann::ordered_json BudgetJson(const FitReport& fit);
 
-/// "The error of inertia comes mostly from the clock (...); compare ...: ± 2 % becomes ± 0.3 %.": the line whose
-/// removal would make the error of inertia or friction smallest relative to what it is; empty if none would make it
-/// much smaller, or nobody can do anything about it.
+/// "Largest error: clock; compare ...: inertia ± 2 % becomes ± 0.3 %.": the line without which the error of inertia or
+/// friction would be smallest relative to what it is; empty if it would hardly be smaller, or nothing can be done.
 std::string LargestErrorText(const FitReport& fit);
 
 }  // namespace pendulum

@@ -42,6 +42,7 @@ struct FitSummary {
   std::string units;                     ///< What gives SI units, if there are none; else empty.
   std::string textbook;                  ///< What the textbook's formulas give, and why it differs; may be empty.
   std::string remarks;                   ///< What a value ± error does not say of these parameters; may be empty.
+  std::string advice;                    ///< What would make the largest error smaller; may be empty.
   std::vector<std::string> assumptions;  ///< What the numbers rest on that nobody said, each with its flag.
   std::vector<Warning> warnings;         ///< Others that the verdict does not say.
   std::string path;                      ///< Of the recording; empty for several.

@@ -131,6 +131,7 @@ export function answerPart(fit: Fit, result: Result, swing: HTMLElement | null):
     'div',
     { class: 'answer-more' },
     summary.remarks ? text(typeset(summary.remarks)) : null,
+    summary.advice ? text(typeset(summary.advice)) : null,
     derivedList(summary),
     equation !== null && el('p', { class: 'equation' }, equation),
     summary.units !== '' && text(typeset(summary.units), 'quiet'),

@@ -79,6 +79,8 @@ export interface FitSummary {
   textbook: string;
   /** What a value ± error does not say of the parameters; may be empty. */
   remarks: string;
+  /** What would make the largest error smaller; results of former versions have none. */
+  advice?: string;
   /** What the numbers rest on that nobody said; missing in results of earlier versions. */
   assumptions?: string[];
   warnings: string[];

@@ -189,7 +189,7 @@ TEST(FitRecording, ScalesOnlyTorquesWithARig) {
 
 TEST(FitRecording, GivesNoSystematicErrorWithoutRigErrors) {
   FitOptions options = ModelOptions("coulomb");
-  options.rig = Must(ParseRig(R"({"gravity_torque": 2.5})", "rig.json"));
+  options.rig = Must(ParseRig(R"({"gravity_torque": {"value": 2.5, "std_dev": 0}})", "rig.json"));
   for (const ParameterEstimate& p : Fit(Must(SimulateRecording(NoisyRun())), options).parameters) {
     EXPECT_FALSE(p.systematic.Total()) << p.info.name;
   }

@@ -72,8 +72,8 @@ TEST(AddRigQuantities, GivesALengthFromGravity) {
 TEST(AddRigQuantities, GivesTheInertiaPerMassOfAPendulumWithLengthAndGravity) {
   // A uniform rod about its end: centre of mass at L/2, I/m = L²/3, effective length 2 L / 3.
   const double rod = 0.6;
-  const FitReport fit =
-      FitWith(R"({"length": 0.3, "gravity": 9.81})", Swing(kEarth * rod / 2 / (rod * rod / 3), Gravity()));
+  const FitReport fit = FitWith(R"({"length": {"value": 0.3, "std_dev": 0}, "gravity": {"value": 9.81, "std_dev": 0}})",
+                                Swing(kEarth * rod / 2 / (rod * rod / 3), Gravity()));
   ExpectQuantity(fit, "effective_length", 2 * rod / 3, "m");
   ExpectQuantity(fit, "inertia_per_mass", rod * rod / 3, "m^2");
   EXPECT_FALSE(FindQuantity(fit, "effective_length")->systematic.Total());
@@ -110,15 +110,16 @@ TEST(AddRigQuantities, GivesInertiaAndFrictionOfASpringWithAStiffness) {
 TEST(AddRigQuantities, AddsTheErrorOfTheClock) {
   Recording recording = Swing(22.8, Gravity());
   recording.clock_scale_std_dev = 1e-3;
-  const FitReport length = FitWith(R"({"length": 0.43})", recording);
+  const FitReport length = FitWith(R"({"length": {"value": 0.43, "std_dev": 0}})", recording);
   const DerivedQuantity& gravity = *FindQuantity(length, "gravity");
   EXPECT_NEAR(*gravity.systematic.Total() / gravity.estimate, 2e-3, 1e-6);
-  const FitReport inertia = FitWith(R"({"inertia": 0.079})", recording);
+  const FitReport inertia = FitWith(R"({"inertia": {"value": 0.079, "std_dev": 0}})", recording);
   const DerivedQuantity& viscous = *FindQuantity(inertia, "viscous_si");
   EXPECT_NEAR(*viscous.systematic.Total() / viscous.estimate, 1e-3, 1e-6);
   // The torque of a rig with mass is known apart from the clock: its error does not belong to g / (G/I).
   const FitReport torque =
-      FitWith(R"({"length": 0.43, "mass": {"value": 0.4, "std_dev": 0.01}, "gravity": 9.81})", recording);
+      FitWith(R"({"length": 0.43, "mass": {"value": 0.4, "std_dev": 0.01}, "gravity": {"value": 9.81, "std_dev": 0}})",
+              recording);
   const DerivedQuantity& effective = *FindQuantity(torque, "effective_length");
   EXPECT_NEAR(*effective.systematic.Total() / effective.estimate, 2e-3, 1e-6);
   EXPECT_EQ(torque.Find("inertia")->unit, "kg m^2");
