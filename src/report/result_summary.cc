@@ -471,10 +471,11 @@ void AddOnce(std::string text, std::vector<std::string>& assumptions) {
     assumptions.push_back(std::move(text));
 }
 
-/// "clock ±1 % for times on an exact grid (--sensor)", if nobody stated the clock.
+/// "clock ±1 % for times on an exact grid (--sensor)", if nobody stated the clock and it may matter.
 std::string ClockText(const SensorErrors& sensor) {
+  constexpr double kMatters = 1e-3;  // a quartz crystal is better
   const EffectSize& clock = sensor.Of(SensorEffect::kClock);
-  if (!clock.is_assumed || !(clock.std_dev > 0)) return "";
+  if (!clock.is_assumed || !(clock.std_dev >= kMatters)) return "";
   return "clock ±" + PlainSizeText(clock.std_dev, "1") + " for " + clock.source + " (--sensor)";
 }
 
@@ -488,8 +489,9 @@ void AddSensors(const Identification& identification, std::vector<std::string>& 
 }
 
 /// What one swing cannot tell, unless the rig's own inertia agrees or disagrees with the fit.
-std::string UntoldText(const std::optional<RigVerdict>& rig) {
-  return rig && rig->z ? "" : "firm support, no spring, no gear (else an effective inertia)";
+std::string UntoldText(const std::optional<RigVerdict>& rig, bool is_spring) {
+  if (rig && rig->z) return "";
+  return std::string("firm support, ") + (is_spring ? "" : "no spring, ") + "no gear (else an effective inertia)";
 }
 
 std::vector<std::string> AssumptionsOf(const std::vector<Warning>& warnings) {
@@ -593,7 +595,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (summary.has_systematic) AddSensors(identification, summary.assumptions);
   const std::optional<RigVerdict> verdict = JudgeInertia(identification.rig, fit);
   if (!identification.is_joint()) SetRigVerdict(verdict, summary);
-  AddOnce(UntoldText(verdict), summary.assumptions);
+  AddOnce(UntoldText(verdict, fit.model.gravity.is_linear()), summary.assumptions);
   summary.remarks = RemarksText(fit);
   summary.advice = LargestErrorText(fit);
   if (const std::string untested = UntestedText(constancy, fit); !untested.empty()) {

@@ -208,8 +208,10 @@ std::string TextbookText(const FitSummary& fit, Folding folding) {
 /// Adds the remarks as paragraphs, or returns them as one.
 std::string AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
   std::string text;
-  for (std::string part : {OmittedText(fit, folding), fit.remarks, folding < Folding::kAdvice ? fit.advice : "",
-                           DerivedText(fit), TextbookText(fit, folding)}) {
+  std::string remarks = OmittedText(fit, folding);
+  Join(fit.remarks, " ", remarks);
+  if (folding < Folding::kAdvice) Join(fit.advice, " ", remarks);
+  for (std::string part : {std::move(remarks), DerivedText(fit), TextbookText(fit, folding)}) {
     if (folding < Folding::kRemarks) {
       section.AddText(part);
       continue;
