@@ -56,8 +56,8 @@ void SetTexts(RigVerdict& verdict) {
   verdict.finding = size + " (" + z + "), more than all errors allow: " + CausesOf(verdict.excess) +
                     " can cause this, and one swing cannot tell which";
   verdict.advice = "record a swing with another bob mass, and check the rig's values";
-  verdict.brief = "The rig disagrees: the fitted inertia is " + excess + " than its own (" + z + "), by " +
-                  CausesOf(verdict.excess) + "; swing another mass (--details)";
+  verdict.brief = "The rig disagrees: inertia " + excess + " (" + z + "): mass, length" +
+                  (verdict.excess > 0 ? ", support, bob or gear" : " or spring");
 }
 
 }  // namespace

@@ -595,7 +595,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   if (summary.has_systematic) AddSensors(identification, summary.assumptions);
   const std::optional<RigVerdict> verdict = JudgeInertia(identification.rig, fit);
   if (!identification.is_joint()) SetRigVerdict(verdict, summary);
-  AddOnce(UntoldText(verdict, fit.model.gravity.is_linear()), summary.assumptions);
+  summary.untold = UntoldText(verdict, fit.model.gravity.is_linear());
   summary.remarks = RemarksText(fit);
   summary.advice = LargestErrorText(fit);
   if (const std::string untested = UntestedText(constancy, fit); !untested.empty()) {
@@ -665,6 +665,8 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
                                                                      : "good";
   nlohmann::ordered_json messages = nlohmann::ordered_json::array();
   for (const Warning& warning : summary.warnings) messages.push_back(summary.TextOf(warning));
+  std::vector<std::string> assumptions = summary.assumptions;
+  AddOnce(summary.untold, assumptions);
   return {{"verdict", summary.verdict},
           {"level", level},
           {"agreement", summary.agreement},
@@ -675,7 +677,7 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
           {"textbook", summary.textbook},
           {"remarks", WithBlanks(summary.remarks)},
           {"advice", WithBlanks(summary.advice)},
-          {"assumptions", summary.assumptions},
+          {"assumptions", std::move(assumptions)},
           {"warnings", messages}};
 }
 

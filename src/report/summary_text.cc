@@ -30,7 +30,7 @@ enum class Folding {
   kAdvice,            // Nothing on the largest error.
   kReasons,           // The textbook's values have no reasons.
   kTextbook,          // No textbook's values.
-  kTogether           // Remarks and assumptions are in one paragraph.
+  kTogether           // Remarks and assumptions are in one paragraph, without what no swing can tell.
 };
 
 constexpr std::array kFoldings = {Folding::kNone,     Folding::kSensorParameters, Folding::kAsides,
@@ -102,9 +102,10 @@ std::string OmittedText(const FitSummary& summary, Folding folding) {
   return text.empty() ? "" : "Also fitted: " + text + ".";
 }
 
-std::string AssumedText(const FitSummary& summary) {
+std::string AssumedText(const FitSummary& summary, Folding folding) {
   std::string text;
   for (const std::string& assumption : summary.assumptions) Join(assumption, "; ", text);
+  if (folding < Folding::kTogether) Join(summary.untold, "; ", text);
   return text.empty() ? "" : "Assumed: " + text + ".";
 }
 
@@ -171,7 +172,7 @@ std::string WarningsText(const WarningTexts& warnings) {
 /// remarks: the paragraph before them.
 void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, std::string remarks, Section& section) {
   const WarningTexts warnings = TextsOf(summary, folding);
-  std::string text = AssumedText(summary);
+  std::string text = AssumedText(summary, folding);
   if (folding >= Folding::kTogether) {
     Join(text, " ", remarks);
     text = std::exchange(remarks, "");

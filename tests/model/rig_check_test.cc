@@ -86,7 +86,8 @@ TEST(QuestionRig, AsksForLengthsAndGravityInOtherUnits) {
 }
 
 TEST(QuestionRig, SaysWhatNominalValuesAdd) {
-  // By hand: dG/G for 1 g in M and m, 1 mm in l, and 0.015 m/s² in g: hypot(1e-3, 0.5e-3) / 0.4275, 1 / 430, 15 / 9810.
+  // By hand: dG/G for 1 g in M, 1 % in m, 1 mm in l, and 0.015 m/s² in g: hypot(1e-3, 0.475e-3) / 0.4275, 1 / 430, 15 /
+  // 9810.
   EXPECT_THAT(QuestionRig(Textbook("0.380", "0.095", "0.43")),
               ElementsAre(Is("rig_errors_assumed",
                              "scales ±1 g, a ruler ±1 mm, g ±0.015; all values of the rig "

@@ -77,7 +77,7 @@ Recommended: coulomb: the only one that converged.
 
 No result with drag: 100 iterations were not enough.
 
-**The law coulomb does not describe all readings: residuals of 0.200 deg (rms) exceed the noise. Look at them (--report), or try another window (--from, --to). The rig disagrees: the fitted inertia is 3.9 % larger than its own (z 4.2), by a wrong mass or length, a support that yields, the extent of the bob, or gears and a motor; swing another mass (--details).**
+**The law coulomb does not describe all readings: residuals of 0.200 deg (rms) exceed the noise. Look at them (--report), or try another window (--from, --to). The rig disagrees: inertia 3.9 % larger (z 4.2): mass, length, support, bob or gear.**
 
 | coulomb | value ± total error | unit | error from |
 | --- | --: | --- | --- |
@@ -91,9 +91,7 @@ No result with drag: 100 iterations were not enough.
 0.0790 th'' + 0.0030 th' + 1.80 sin th = 0
 ```
 
-Weakly identifiable: viscous.
-
-Largest error: gravity torque; weigh the pendulum held horizontal: inertia ± 1.3 % becomes ± 0.32 %.
+Weakly identifiable: viscous. Largest error: gravity torque; weigh the pendulum held horizontal: inertia ± 1.3 % becomes ± 0.32 %.
 
 The textbook's log decrement gives I_O 0.08020 (1.5 % more), b 0.003060 (agrees).
 

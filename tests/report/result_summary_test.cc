@@ -86,8 +86,7 @@ TEST(SummarizeFit, SaysThatTheRigDisagrees) {
                                 "rig")
                            .value();
   const FitSummary summary = SummarizeFit(identification, 0);
-  EXPECT_THAT(summary.verdict,
-              HasSubstr("The rig disagrees: the fitted inertia is 13 % larger than its own (z 9.3), by "));
+  EXPECT_THAT(summary.verdict, HasSubstr("The rig disagrees: inertia 13 % larger (z 9.3): mass, "));
   EXPECT_EQ(summary.emphasis, Emphasis::kCaution);
   EXPECT_THAT(summary.warnings, IsEmpty());  // the verdict says it
 }

@@ -44,6 +44,7 @@ struct FitSummary {
   std::string remarks;                   ///< What a value ± error does not say of these parameters; may be empty.
   std::string advice;                    ///< What would make the largest error smaller; may be empty.
   std::vector<std::string> assumptions;  ///< What the numbers rest on that nobody said, each with its flag.
+  std::string untold;                    ///< What is assumed because no free swing can tell it; empty if the rig tells.
   std::vector<Warning> warnings;         ///< Others that the verdict does not say.
   std::string path;                      ///< Of the recording; empty for several.
 
