@@ -25,12 +25,15 @@ constexpr double kUnitWithin = 1.6;   // a unit explains a ratio that it changes
 constexpr double kOtherPlanet = 30;   // a length alone is refused if its g differs from the Earth's by more than this
 constexpr int kDigits = 3;
 
-/// A value with its unit as on the command line: 0.43m, 380g.
-std::string FlagValue(double value, std::string_view unit) {
-  std::string text = NumberText(value) + std::string(unit);
+/// A unit as on the command line, without blanks.
+std::string FlagUnit(std::string_view unit) {
+  std::string text(unit);
   std::erase(text, ' ');
   return text;
 }
+
+/// A value with its unit as on the command line: 0.43m, 380g.
+std::string FlagValue(double value, std::string_view unit) { return NumberText(value) + FlagUnit(unit); }
 
 /// `"rod_length" is 43 m: in cm? Write 0.43`
 std::string Question(const RigKey& key, double value, const RigUnit& unit, const std::string& rig_name) {
@@ -125,7 +128,8 @@ std::string Converted(const Rig& rig) {
 /// A value with a standard deviation, as it is given in the rig file or by flags.
 std::string ErrorExample(const RigKey& key, const Rig& rig) {
   if (!IsGivenByFlags(rig.name)) return Quoted(key.name) + R"(: {"value": ..., "std_dev": ...})";
-  return KeyText(key, rig.name) + " " + NumberText(ValueOfEntry(rig.source.at(std::string(key.name)))) + "+-...";
+  return KeyText(key, rig.name) + " " + NumberText(ValueOfEntry(rig.source.at(std::string(key.name)))) + "+-..." +
+         FlagUnit(key.unit);
 }
 
 /// How to give a standard deviation.
@@ -138,7 +142,7 @@ std::string ToolText(RigQuantity quantity, double std_dev) {
   switch (quantity) {
     case RigQuantity::kMass: return "scales ±" + NumberText(std_dev * 1e3, kDigits) + " g";
     case RigQuantity::kLength: return "a ruler ±" + NumberText(std_dev * 1e3, kDigits) + " mm";
-    case RigQuantity::kAcceleration: return "g ±" + NumberText(std_dev, kDigits);
+    case RigQuantity::kAcceleration: return "gravity ±" + NumberText(std_dev, kDigits);
     case RigQuantity::kTorque: return "a torque ±1 %";
     case RigQuantity::kStiffness: return "a stiffness ±1 %";
     case RigQuantity::kInertia: return "an inertia ±1 %";
@@ -154,7 +158,9 @@ void SayErrors(const Rig& rig, std::vector<Warning>& warnings) {
   for (const RigKey& key : RigKeys()) {
     if (!rig.source.contains(key.name) || HasStdDev(rig.source.at(key.name))) continue;
     const double std_dev = StdDevOfEntry(key, rig.source.at(key.name));
-    if (!(std_dev > 0)) continue;  // a rod that weighs nothing
+    const bool is_converted =
+        !rig.gives_torque || std::ranges::find(rig.errors, key.name, &RigError::key) != rig.errors.end();
+    if (!(std_dev > 0) || !is_converted) continue;  // a rod that weighs nothing, or an inertia to compare with
     if (first == nullptr) first = &key;
     names.push_back(KeyText(key, rig.name));
     largest[key.quantity] = std::max(largest[key.quantity], std_dev);
@@ -163,7 +169,10 @@ void SayErrors(const Rig& rig, std::vector<Warning>& warnings) {
   const RigValue converting = Converting(rig);
   const std::string share = NumberText(100 * converting.std_dev / converting.value, 2) + " %";
   if (first == nullptr) {
-    if (converting.std_dev > 0) return;
+    const auto has_error = [&](const RigKey& key) {
+      return rig.source.contains(key.name) && StdDevOfEntry(key, rig.source.at(key.name)) > 0;
+    };
+    if (std::ranges::any_of(RigKeys(), has_error)) return;
     warnings.push_back({.code = "rig_exact",
                         .finding = "the rig's standard deviations are 0, so its values count as exact",
                         .assumed = "rig exact, as stated"});
@@ -177,7 +186,7 @@ void SayErrors(const Rig& rig, std::vector<Warning>& warnings) {
        .advice = HowToGiveError(*first, rig) + ", 0 if it is exact",
        .flags = FlagsOf(*first, rig),
        .assumed = NameList(tools) + " (" + share + ": " +
-                  (IsGivenByFlags(rig.name) ? ErrorExample(*first, rig) : R"("std_dev" in the rig)") + ")"});
+                  (IsGivenByFlags(rig.name) ? KeyText(*first, rig.name) + " +-..." : R"("std_dev" in the rig)") + ")"});
 }
 
 // ---- With the swing ------------------------------------------------------------------------------------------------

@@ -26,17 +26,16 @@ bool LacksGravity(const Json& values) {
 /// The rig of the values. If it needs g and has none, it gets the mean at sea level, and a warning says so.
 Result<Rig> ParseWithGravity(Json values, const std::string& name, std::vector<Warning>& warnings) {
   const bool lacks_gravity = LacksGravity(values);
-  const double error = NominalStdDev(RigQuantity::kAcceleration, kMeanGravity);
-  if (lacks_gravity) values["gravity"] = {{"value", kMeanGravity}, {"std_dev", error}};
+  if (lacks_gravity) values["gravity"] = kMeanGravity;
   Result<Rig> rig = ParseRig(JsonText(values), name);
   if (rig && lacks_gravity) {
     const std::string mean = NumberText(kMeanGravity);
-    const std::string std_dev = NumberText(error);
+    const std::string std_dev = NumberText(NominalStdDev(RigQuantity::kAcceleration, kMeanGravity));
     warnings.push_back({.code = "gravity_assumed",
                         .finding = "g was taken as " + mean + " +- " + std_dev + " m/s^2, as at sea level",
                         .advice = "give the local value with --g",
                         .flags = {"g"},
-                        .assumed = "g " + mean + " ± " + std_dev + " m/s^2 (--g)"});
+                        .assumed = "g " + mean + " (--g)"});
   }
   return rig;
 }

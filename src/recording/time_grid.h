@@ -20,23 +20,43 @@ inline double LastPlace(const Eigen::VectorXd& numbers) {
   return place;
 }
 
-/// Whether all times, increasing, lie on one uniform grid but for the rounding of their last place; rows may be
-/// missing. A clock that is read in each row hardly ever shows such times: a loop takes a little longer now and then.
-inline bool AreOnGrid(const Eigen::VectorXd& time) {
-  constexpr double kMostRounding = 0.05;  // of an interval: coarser times do not show whether they are on a grid
-  if (time.size() < 3) return false;
+/// The row of each time on a uniform grid, from 0; empty if the times do not increase. The interval is refined on the
+/// way, because a single step is rounded.
+inline Eigen::VectorXd RowsOf(const Eigen::VectorXd& time) {
   const Eigen::VectorXd steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
+  if (!(steps.array() > 0).all()) return {};
   std::vector<double> sorted(steps.begin(), steps.end());
   std::ranges::nth_element(sorted, sorted.begin() + steps.size() / 2);
-  const double step = sorted[static_cast<std::size_t>(steps.size() / 2)];
-  if (!(step > 0)) return false;
-  Eigen::VectorXd place(time.size());
-  place[0] = 0;
-  for (Eigen::Index i = 0; i < steps.size(); ++i) place[i + 1] = place[i] + std::round(steps[i] / step);
-  const double interval = (time[time.size() - 1] - time[0]) / place[time.size() - 1];
-  const double rounding = std::min(LastPlace(time), kMostRounding * interval);
-  const Eigen::VectorXd off = time.array() - time[0] - interval * place.array();
-  return (steps.array() > 0).all() && off.cwiseAbs().maxCoeff() <= rounding;
+  const double median = sorted[static_cast<std::size_t>(steps.size() / 2)];
+  double sum = 0, count = 0;  // of single steps
+  for (const double step : steps) {
+    if (std::round(step / median) != 1) continue;
+    sum += step;
+    ++count;
+  }
+  Eigen::VectorXd rows(time.size());
+  rows[0] = 0;
+  for (Eigen::Index i = 0; i < steps.size(); ++i)
+    rows[i + 1] = rows[i] + std::max(std::round(steps[i] * count / sum), 1.0);
+  return rows;
+}
+
+/// Whether all times, increasing, lie on one uniform grid but for the rounding of their last place; rows may be missing
+/// if that place is much finer than the grid. A clock that is read in each row shows such times only if its steps are
+/// coarser than the scatter of the loop.
+inline bool AreOnGrid(const Eigen::VectorXd& time) {
+  constexpr double kRounding = 0.75;  // places: half of one, and some for the fitted line
+  constexpr double kFine = 0.2;       // of an interval
+  if (time.size() < 3) return false;
+  const Eigen::VectorXd rows = RowsOf(time);
+  if (rows.size() == 0) return false;
+  const Eigen::VectorXd from_mean = rows.array() - rows.mean();
+  const Eigen::VectorXd later = time.array() - time.mean();
+  const double interval = from_mean.dot(later) / from_mean.squaredNorm();
+  const double place = LastPlace(time);
+  const bool is_complete = rows[rows.size() - 1] == static_cast<double>(rows.size() - 1);
+  if (place > kFine * interval && !is_complete) return false;
+  return (later - interval * from_mean).cwiseAbs().maxCoeff() <= kRounding * place;
 }
 
 }  // namespace pendulum

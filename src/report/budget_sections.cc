@@ -21,9 +21,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kNoise = "noise";
 
 /// A line that stands for what the fit has of one kind in all parameters.
-BudgetLine LineOf(const FitReport& fit, ErrorSource source, std::string_view name, std::string origin,
-                  const auto& part_of) {
-  BudgetLine line{source, std::string(name), std::move(origin), false, std::nullopt, "", {}};
+BudgetLine LineOf(const FitReport& fit, std::optional<ErrorSource> source, std::string origin, const auto& part_of) {
+  const std::string_view name = source ? ErrorSourceName(*source) : kNoise;
+  BudgetLine line{source, EvaluationType::kA, std::string(name), std::move(origin), false, std::nullopt, "", {}};
   line.parts.resize(static_cast<Eigen::Index>(fit.parameters.size()));
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     line.parts[static_cast<Eigen::Index>(i)] = part_of(fit.parameters[i]);
@@ -31,13 +31,7 @@ BudgetLine LineOf(const FitReport& fit, ErrorSource source, std::string_view nam
   return line;
 }
 
-std::string_view SourceName(const BudgetLine& line) {
-  return line.name == kNoise ? kNoise : ErrorSourceName(line.source);
-}
-
-std::string_view TypeName(const BudgetLine& line) {
-  return line.name == kNoise || EvaluationTypeOf(line.source) == EvaluationType::kA ? "A" : "B";
-}
+std::string_view TypeName(const BudgetLine& line) { return line.type == EvaluationType::kA ? "A" : "B"; }
 
 /// The parameters that have an error.
 std::vector<std::size_t> WithErrors(const FitReport& fit) {
@@ -88,12 +82,18 @@ std::string RelativeText(double error, double estimate) {
   return "±" + std::string(kNoBreak) + NumberText(100 * error / std::abs(estimate), 2) + std::string(kNoBreak) + "%";
 }
 
+/// The total error without a line. Lines of one source may depend on each other, but not on other sources.
+double ErrorWithout(double part, double of_source, double total) {
+  const double others = total * total - of_source * of_source;
+  return std::sqrt(std::max(others, 0.0) + std::max(of_source * of_source - part * part, 0.0));
+}
+
 }  // namespace
 
 std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
   std::vector<BudgetLine> lines;
   if (fit.termination != Termination::kConverged) return lines;
-  lines.push_back(LineOf(fit, {}, kNoise, "the scatter of the readings",
+  lines.push_back(LineOf(fit, std::nullopt, "the scatter of the readings",
                          [](const ParameterEstimate& parameter) { return parameter.std_error.value_or(0); }));
   for (BudgetLine line : fit.budget) {
     for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
@@ -104,7 +104,7 @@ std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
   constexpr std::array kOfReadings = {std::pair{ErrorSource::kInconstancy, "parts of the readings differ"},
                                       std::pair{ErrorSource::kFrictionLaw, "the readings suggest other friction"}};
   for (const auto& [source, origin] : kOfReadings) {
-    lines.push_back(LineOf(fit, source, ErrorSourceName(source), origin,
+    lines.push_back(LineOf(fit, source, origin,
                            [&](const ParameterEstimate& parameter) { return parameter.systematic.Of(source); }));
   }
   std::erase_if(lines, [](const BudgetLine& line) { return !(line.parts.array() > 0).any(); });
@@ -114,7 +114,7 @@ std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
 Sections BudgetSections(const FitReport& fit) {
   const std::vector<BudgetLine> lines = BudgetOf(fit);
   if (lines.size() < 2) return {};
-  Table table{{{"± by"}, {"its size", true}, {"type"}}};
+  Table table{{{"cause"}, {"its size", true}, {"type"}}};
   const std::vector<std::size_t> places = WithErrors(fit);
   for (const std::size_t i : places) table.columns.push_back({std::string(fit.parameters[i].info.name), true});
   table.columns.push_back({"where the size comes from"});
@@ -150,7 +150,7 @@ Json BudgetJson(const FitReport& fit) {
       if (part > 0) parts[std::string(fit.parameters[i].info.name)] = part;
     }
     budget.push_back({{"name", line.name},
-                      {"source", SourceName(line)},
+                      {"source", line.source ? ErrorSourceName(*line.source) : kNoise},
                       {"type", TypeName(line)},
                       {"origin", line.origin},
                       {"assumed", line.is_assumed},
@@ -163,23 +163,22 @@ Json BudgetJson(const FitReport& fit) {
 
 std::string LargestErrorText(const FitReport& fit) {
   constexpr double kSmaller = 1.25;  // times
+  const std::vector<BudgetLine> lines = BudgetOf(fit);
   double best = kSmaller;
   std::string text;
-  for (const BudgetLine& line : BudgetOf(fit)) {
-    const auto* const remedy = std::ranges::find(kRemedies, line.name, &Remedy::name);
-    if (remedy == kRemedies.end()) continue;
-    for (const std::size_t i : PhysicalWithErrors(fit)) {
-      const ParameterEstimate& parameter = fit.parameters[i];
-      const double total = *TotalStdError(parameter.std_error, parameter.systematic);
-      const double part = line.parts[static_cast<Eigen::Index>(i)];
-      const double left = std::sqrt(std::max(total * total - part * part, 0.0));
-      const double shown = std::max(left, *parameter.std_error);
-      if (!(total > best * shown)) continue;
-      best = total / shown;
-      text = "Largest error: " + InWords(line.name) + "; " + std::string(remedy->text) + ": " +
-             std::string(parameter.info.name) + " " + RelativeText(total, parameter.estimate) + " becomes " +
-             RelativeText(shown, parameter.estimate) + ".";
-    }
+  for (const std::size_t i : PhysicalWithErrors(fit)) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    const auto part_of = [&](const BudgetLine& line) { return line.parts[static_cast<Eigen::Index>(i)]; };
+    const BudgetLine& largest = *std::ranges::max_element(lines, {}, part_of);
+    const auto* const remedy = std::ranges::find(kRemedies, largest.name, &Remedy::name);
+    if (remedy == kRemedies.end() || !largest.source) continue;
+    const double total = *TotalStdError(parameter.std_error, parameter.systematic);
+    const double left = ErrorWithout(part_of(largest), parameter.systematic.Of(*largest.source), total);
+    if (!(total > best * left)) continue;
+    best = total / left;
+    text = "Largest error: " + InWords(largest.name) + "; " + std::string(remedy->text) + ": " +
+           std::string(parameter.info.name) + " " + RelativeText(total, parameter.estimate) + ", at best " +
+           RelativeText(left, parameter.estimate) + ".";
   }
   return text;
 }

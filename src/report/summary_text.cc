@@ -170,14 +170,13 @@ std::string WarningsText(const WarningTexts& warnings) {
 }
 
 /// remarks: the paragraph before them.
-void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, std::string remarks, Section& section) {
+void AddAssumptionsAndWarnings(const FitSummary& summary, Folding folding, const std::string& remarks,
+                               Section& section) {
   const WarningTexts warnings = TextsOf(summary, folding);
-  std::string text = AssumedText(summary, folding);
-  if (folding >= Folding::kTogether) {
-    Join(text, " ", remarks);
-    text = std::exchange(remarks, "");
-  }
-  section.AddText(remarks);
+  const bool are_together = folding >= Folding::kTogether;
+  std::string text = are_together ? remarks : "";
+  if (!are_together) section.AddText(remarks);
+  Join(AssumedText(summary, folding), " ", text);
   if (folding >= Folding::kParagraphs) {
     Join(WarningsText(warnings), " ", text);
     section.AddText(text, warnings.sentences.empty() ? Emphasis::kNone : Emphasis::kCaution);

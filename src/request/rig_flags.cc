@@ -73,17 +73,20 @@ bool TakePlusMinus(std::string_view& text) {
   return false;
 }
 
+/// Whether a standard deviation is given; 0 is exact, and none is nominal.
+bool HasStdDev(const std::string& text) {
+  const std::string with_points = WithDecimalPoints(text);
+  std::string_view rest = with_points;
+  TakeNumber(rest);
+  return TakePlusMinus(rest);
+}
+
 bool HasUnit(const std::string& text) {
   const std::string with_points = WithDecimalPoints(text);
   std::string_view rest = with_points;
   TakeNumber(rest);
   if (TakePlusMinus(rest)) TakeNumber(rest);
   return !rest.empty();
-}
-
-Json JsonOf(const RigValue& value) {
-  if (value.std_dev == 0) return value.value;
-  return {{"value", value.value}, {"std_dev", value.std_dev}};
 }
 
 }  // namespace
@@ -123,7 +126,8 @@ Result<nlohmann::ordered_json> RigValuesOf(const std::vector<std::string>& texts
     const RigKey& key = RigKeys()[i];
     const std::string flag = "--" + std::string(key.flag);
     ASSIGN_OR_RETURN(const RigValue value, ParseRigValue(flag, texts[i], key));
-    values[std::string(key.name)] = JsonOf(value);
+    values[std::string(key.name)] =
+        HasStdDev(texts[i]) ? Json{{"value", value.value}, {"std_dev", value.std_dev}} : Json(value.value);
     const bool is_zero = value.value == 0 && value.std_dev == 0;
     if (key.quantity == RigQuantity::kAcceleration || is_zero || HasUnit(texts[i])) continue;
     without_unit.push_back(flag + " " + texts[i] + " " + std::string(key.unit));

@@ -36,7 +36,7 @@ inline FitReport ExampleFit() {
                     ExampleParameter(kViscous, "N m s/rad", 0.003, 0.0005), ExampleParameter(kCoulomb, "N m", 0, 0),
                     ExampleParameter(kReleaseAngle, "rad", 0.423, 0.0002)};
   fit.parameters[0].systematic.Add(ErrorSource::kRig, 0.001);
-  fit.budget = {{ErrorSource::kRig, "gravity_torque", "stated in the rig", false, 0.01, "N m",
+  fit.budget = {{ErrorSource::kRig, EvaluationType::kB, "gravity_torque", "stated with the rig", false, 0.01, "N m",
                  (Eigen::VectorXd(5) << 0.001, 0, 0, 0, 0).finished()}};
   ParameterEstimate& coulomb = fit.parameters[2];
   coulomb.std_error.reset();

@@ -90,7 +90,7 @@ TEST(QuestionRig, SaysWhatNominalValuesAdd) {
   // 9810.
   EXPECT_THAT(QuestionRig(Textbook("0.380", "0.095", "0.43")),
               ElementsAre(Is("rig_errors_assumed",
-                             "scales ±1 g, a ruler ±1 mm, g ±0.015; all values of the rig "
+                             "scales ±1 g, a ruler ±1 mm, gravity ±0.015; all values of the rig "
                              "together add a systematic error of 0.38 % to inertia")));
   // 1 mm of 420 mm is 0.24 % of g.
   EXPECT_THAT(QuestionRig(RigOf(R"({"length": 0.42})")),

@@ -25,7 +25,11 @@ TEST(LastPlace, IsThatOfTheNumberWithMostDecimals) {
 
 TEST(AreOnGrid, AcceptsCountedTimes) {
   EXPECT_TRUE(AreOnGrid(Times([](double i) { return 0.01 * i; })));
-  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1e-6, i / 60); })));       // rounded
+  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1e-6, i / 60); })));  // rounded
+  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1, 1000 * i / 60); })));
+  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1, 1000 * i / 120); })));
+  EXPECT_TRUE(AreOnGrid(Times([](double i) { return 1.7e9 + RoundedTo(1e-3, 0.01 * i); })));               // since 1970
+  EXPECT_TRUE(AreOnGrid(Times([](double i) { return RoundedTo(1e-3, (i + (i > 700 ? 50 : 0)) / 30); })));  // a gap
   EXPECT_TRUE(AreOnGrid(Times([](double i) { return 10 * (i + (i > 700 ? 3 : 0)); })));  // three rows are missing
 }
 
@@ -37,6 +41,8 @@ TEST(AreOnGrid, RejectsMeasuredTimes) {
   double now = 0;
   EXPECT_FALSE(AreOnGrid(Times([&](double) { return std::floor(now += 10.1 + 0.3 * uniform(random)); })));
   EXPECT_FALSE(AreOnGrid(Times([&](double i) { return RoundedTo(1e-3, 0.01 * i + 0.002 * uniform(random)); })));
+  now = 0;  // a loop of 10.2 to 10.5 ms that prints two decimals
+  EXPECT_FALSE(AreOnGrid(Times([&](double) { return RoundedTo(0.01, now += 0.0102 + 0.0003 * uniform(random)); })));
 }
 
 TEST(AreOnGrid, NeedsTimesThatIncrease) {

@@ -29,8 +29,8 @@ FitReport FitWithBudget() {
   inertia.systematic.Add(ErrorSource::kClock, 0.0008);
   inertia.systematic.Add(ErrorSource::kInconstancy, 0.0001);
   fit.parameters.push_back(inertia);
-  fit.budget.push_back({ErrorSource::kClock, "clock", "assumed for times on an exact grid", true, 0.005, "1",
-                        Eigen::VectorXd::Constant(1, 0.0008)});
+  fit.budget.push_back({ErrorSource::kClock, EvaluationType::kB, "clock", "assumed for times on an exact grid", true,
+                        0.005, "1", Eigen::VectorXd::Constant(1, 0.0008)});
   return fit;
 }
 
@@ -60,7 +60,7 @@ TEST(BudgetJson, HasThePartsOfEachParameter) {
 TEST(LargestErrorText, SaysWhatLessOfItWouldGive) {
   EXPECT_EQ(
       WithBlanks(LargestErrorText(FitWithBudget())),
-      "Largest error: clock; compare the recorder's clock with a watch (--sensor): inertia ± 1 % becomes ± 0.18 %.");
+      "Largest error: clock; compare the recorder's clock with a watch (--sensor): inertia ± 1 %, at best ± 0.18 %.");
 }
 
 TEST(LargestErrorText, IsEmptyIfNothingCanBeDone) {

@@ -73,14 +73,14 @@ constexpr const char* kWholeFit = R"([[Data]]
     let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.
 [[Error budget]]
-    ± by            its size  type  inertia  viscous  release_angle
+    cause           its size  type  inertia  viscous  release_angle
     noise                     A     0.00025   0.0005         0.0002
     gravity torque  0.01 N m  B       0.001
     total                             0.001   0.0005         0.0002
 
-    ± by            where the size comes from
+    cause           where the size comes from
     noise           the scatter of the readings
-    gravity torque  stated in the rig
+    gravity torque  stated with the rig
     Standard deviations, in the units of the parameters. Type A: from the
     statistics of readings; B: stated or assumed. What the readings say of the
     sensor makes its lines depend on each other; the total allows for that.

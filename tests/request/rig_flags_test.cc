@@ -53,6 +53,15 @@ TEST(ParseRigValue, ReadsStandardDeviations) {
   }
 }
 
+TEST(RigValuesOf, CallsOnlyAStatedZeroExact) {
+  std::vector<std::string> texts(RigKeys().size());
+  std::vector<Warning> warnings;
+  texts[0] = "380+-0g";
+  EXPECT_EQ(RigValuesOf(texts, warnings).value()["bob_mass"]["std_dev"], 0);
+  texts[0] = "380g";
+  EXPECT_EQ(RigValuesOf(texts, warnings).value()["bob_mass"], 0.38);
+}
+
 TEST(ParseRigValue, RefusesOtherTexts) {
   EXPECT_EQ(
       Refusal("380 cm", "bob_mass"),

@@ -213,7 +213,7 @@ class Units(RigTest):
     def test_bare_numbers_have_the_errors_of_their_tools(self):
         result, text = self.fit("--data", "run.csv", "--details", rig=swing.RIG)
         self.assertIn("rig_errors_assumed", self.codes(result))
-        self.assertIn("assumed: scales ±1 g, a ruler ±1 mm, g ±0.015", " ".join(text.split()))
+        self.assertIn("assumed: scales ±1 g, a ruler ±1 mm, gravity ±0.015", " ".join(text.split()))
         lines = {line["name"]: line for line in result["fits"][0]["budget"]}
         self.assertLessEqual({"bob_mass", "rod_mass", "rod_length", "gravity"}, set(lines))
         inertia = result["fits"][0]["parameters"]["inertia"]

@@ -13,7 +13,7 @@ namespace pendulum {
 struct GeometricInertia {
   bool is_point_mass = false;  ///< True for (M + m) l²: the rod's mass counts as part of the bob.
   double value = 0;
-  std::optional<double> std_error;  ///< std::nullopt if the rig file gives no standard deviations.
+  std::optional<double> std_error;  ///< std::nullopt if all of the rig's are 0.
   /// Standard deviation of (value - fitted) due to the rig's errors alone. Both depend on the same masses and lengths.
   double difference_std_error = 0;
 };

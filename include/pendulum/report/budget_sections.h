@@ -23,7 +23,7 @@ Sections BudgetSections(const FitReport& fit);
 /// The same as JSON, with the parts of all parameters.
 nlohmann::ordered_json BudgetJson(const FitReport& fit);
 
-/// "Largest error: clock; compare ...: inertia ± 2 % becomes ± 0.3 %.": the line without which the error of inertia or
+/// "Largest error: clock; compare ...: inertia ± 2 %, at best ± 0.3 %.": the line without which the error of inertia or
 /// friction would be smallest relative to what it is; empty if it would hardly be smaller, or nothing can be done.
 std::string LargestErrorText(const FitReport& fit);
 

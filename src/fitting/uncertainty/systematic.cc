@@ -27,6 +27,7 @@ struct SourceLine {
   std::string unit = "1";
   std::vector<Index> columns = {0};
   double share = 1;
+  EvaluationType type = EvaluationType::kB;
 };
 
 /// A source of systematic error, and its effect on a fit of P parameters.
@@ -167,11 +168,21 @@ std::vector<SourceLine> SensorLines(const Recording& recording, const EffectChec
                           of && of->size.std_dev > 0
                               ? SourceLine{name, of->size.SourceText(), of->size.is_assumed, of->size.std_dev, of->unit}
                               : SourceLine{name, "suggested by the readings", false, std::nullopt, ""});
+      if (!line->std_dev) line->type = EvaluationType::kA;
       line->columns.clear();
     }
     line->columns.push_back(static_cast<Index>(k));
   }
   return lines;
+}
+
+/// Recordings share the sensor if they have its kind, the same causes, and the same sizes as far as these are stated.
+/// What is assumed may depend on the amplitude.
+std::string IdentityOf(const SensorErrors& sensor, const EffectCheck& effects, const std::vector<Index>& budget) {
+  std::string identity = "sensor " + sensor.kind;
+  for (const EffectSize& size : sensor.sizes) identity += size.is_assumed ? " -" : " " + NumberText(size.std_dev);
+  for (const Index k : budget) identity.append(" ").append(CauseName(effects.causes[static_cast<std::size_t>(k)]));
+  return identity;
 }
 
 /// The effects of the error budget as one source. Recordings of one kind of sensor share it.
@@ -182,7 +193,7 @@ std::optional<SystematicSource> SensorSource(const Recording& recording, const E
   }
   if (budget.empty()) return std::nullopt;
   return SystematicSource{ErrorSource::kSensor,
-                          "sensor " + recording.sensor_errors.kind + " " + std::to_string(budget.size()),
+                          IdentityOf(recording.sensor_errors, effects, budget),
                           {},
                           effects.pull(Eigen::all, budget),
                           effects.second_moment(budget, budget),
@@ -192,6 +203,7 @@ std::optional<SystematicSource> SensorSource(const Recording& recording, const E
 SourceLine CalibrationLine(const Calibration& calibration) {
   SourceLine line{"calibration", "the covariance of its coefficients", false, std::nullopt, ""};
   line.columns.resize(calibration.coefficients.size());
+  line.type = EvaluationType::kA;
   std::iota(line.columns.begin(), line.columns.end(), Index{0});
   return line;
 }
@@ -204,7 +216,7 @@ std::vector<SourceLine> RigLines(const Rig& rig) {
   for (const RigError& error : rig.errors) {
     const RigKey& key = *std::ranges::find(RigKeys(), error.key, &RigKey::name);
     lines.push_back({std::string(error.key),
-                     error.is_assumed ? "assumed of a nominal value" : "stated in the rig",
+                     error.is_assumed ? "assumed for a nominal value" : "stated with the rig",
                      error.is_assumed,
                      error.std_dev,
                      std::string(key.unit),
@@ -238,10 +250,9 @@ std::vector<SystematicSource> SourcesOfRun(const FittedRun& run, const EffectChe
               RigLines(*rig));
   }
   const SensorErrors& sensor = recording.sensor_errors;
-  const double stated = recording.clock_scale_std_dev / recording.clock_scale;
-  const EffectSize of_clock =
-      stated > 0 ? EffectSize{stated, "stated with the clock"} : sensor.Of(SensorEffect::kClock);
-  const double clock_error = of_clock.std_dev;
+  // A clock that was rebuilt from coarse stamps has the error of that beside its own; a stated one has no other.
+  const EffectSize& of_clock = sensor.Of(SensorEffect::kClock);
+  const double clock_error = std::hypot(of_clock.std_dev, recording.clock_scale_std_dev / recording.clock_scale);
   const std::vector<SourceLine> clock_lines = {{"clock", of_clock.SourceText(), of_clock.is_assumed, clock_error}};
   const std::string clock = "clock " + NumberText(recording.clock_scale) + " " + NumberText(clock_error);
   const bool has_own_clock = recording.quantity == Quantity::kRate || recording.quantity == Quantity::kAcceleration;
@@ -329,7 +340,7 @@ SystematicCovariance CovarianceOfSource(const SystematicSource& source, const So
     const auto of_line = moved(Eigen::all, line.columns);
     const Eigen::VectorXd variance =
         (of_line * source.covariance(line.columns, line.columns) * of_line.transpose()).diagonal();
-    lines.push_back({source.kind, line.name, line.origin, line.is_assumed, line.std_dev, line.unit,
+    lines.push_back({source.kind, line.type, line.name, line.origin, line.is_assumed, line.std_dev, line.unit,
                      (line.share * variance).cwiseMax(0).cwiseSqrt()});
   }
   return {source.kind, moved * source.covariance * moved.transpose(), ratios * source.covariance * ratios.transpose(),

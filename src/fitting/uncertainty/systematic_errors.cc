@@ -17,18 +17,6 @@ std::string_view ErrorSourceName(ErrorSource source) {
   return "";
 }
 
-EvaluationType EvaluationTypeOf(ErrorSource source) {
-  switch (source) {
-    case ErrorSource::kRig:
-    case ErrorSource::kClock:
-    case ErrorSource::kSensor: return EvaluationType::kB;
-    case ErrorSource::kCalibration:
-    case ErrorSource::kInconstancy:
-    case ErrorSource::kFrictionLaw: return EvaluationType::kA;
-  }
-  return EvaluationType::kB;
-}
-
 double SystematicErrors::OfMotion() const {
   return std::hypot(Of(ErrorSource::kInconstancy), Of(ErrorSource::kFrictionLaw));
 }

@@ -25,19 +25,16 @@ std::string_view ErrorSourceName(ErrorSource source);
 /// How an uncertainty was evaluated (GUM, JCGM 100:2008, 0.7): by statistics of observations, or by other means.
 enum class EvaluationType { kA, kB };
 
-/// The type of a source: calibrations, changes and other laws are estimated from readings; rig, clock and sensor
-/// are stated or assumed.
-EvaluationType EvaluationTypeOf(ErrorSource source);
-
 /// One line of the error budget: a single cause, and what it adds to the errors of a fit.
 struct BudgetLine {
-  ErrorSource source = ErrorSource::kRig;  ///< The source to which it belongs.
-  std::string name;                        ///< "rod_length", "gain", "clock", "calibration"
-  std::string origin;                      ///< Of its size: "assumed for a potentiometer", "stated in the rig"
-  bool is_assumed = false;                 ///< Nobody stated its size.
-  std::optional<double> std_dev;           ///< Its size before the recording; absent if it is not one number.
-  std::string unit;                        ///< Of std_dev; "1" if relative.
-  Eigen::VectorXd parts;                   ///< P, the standard deviation that it alone causes in each parameter.
+  std::optional<ErrorSource> source;  ///< The source to which it belongs; absent: noise.
+  EvaluationType type = EvaluationType::kA;
+  std::string name;               ///< "rod_length", "gain", "clock", "calibration"
+  std::string origin;             ///< Of its size: "assumed for a potentiometer", "stated in the rig"
+  bool is_assumed = false;        ///< Nobody stated its size.
+  std::optional<double> std_dev;  ///< Its size before the recording; absent if it is not one number.
+  std::string unit;               ///< Of std_dev; "1" if relative.
+  Eigen::VectorXd parts;          ///< P, the standard deviation that it alone causes in each parameter.
 };
 
 /// The systematic errors of one quantity: a standard deviation for each source, in the quantity's unit. Sources are
