@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { assertAccessible, assertRange, ink, kLooks, open, shownRange } from './page.mjs';
-import { makeJoint, makeJointFailed, makeOdd, makeRecorded } from './reports.mjs';
+import { makeJoint, makeJointFailed, makeOdd, makeRecorded, withLongPaths } from './reports.mjs';
 
 const openJoint = (t) => open(t, makeJoint());
 const kNothing = /NaN|undefined|\bnull\b|Infinity/;
@@ -157,7 +157,7 @@ test('without samples the tables remain; no number is NaN', async (t) => {
 
 for (const [colorScheme, name, width] of kLooks) {
   test(`${colorScheme}, ${name}: a joint report is accessible and not wider than the window`, async (t) => {
-    const page = await open(t, makeOdd(), { context: { colorScheme, viewport: { width, height: 800 } } });
+    const page = await open(t, withLongPaths(makeOdd()), { context: { colorScheme, viewport: { width, height: 800 } } });
     await assertAccessible(page);
   });
 }

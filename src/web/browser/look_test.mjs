@@ -5,11 +5,11 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { assertAccessible, ink, kLooks, kPlot, open } from './page.mjs';
-import { makeReport } from './reports.mjs';
+import { makeReport, withLongPaths } from './reports.mjs';
 
 for (const [colorScheme, name, width] of kLooks) {
   test(`${colorScheme}, ${name}: accessible, and the page is not wider than the window`, async (t) => {
-    const page = await open(t, makeReport(), {
+    const page = await open(t, withLongPaths(makeReport()), {
       context: { colorScheme, viewport: { width, height: 800 } },
     });
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), colorScheme);

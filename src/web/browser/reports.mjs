@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the pages that fit_pendulum writes contain: names, result, sections, series and command.
 
-import { dataset, embedded, fit, once } from './tool.mjs';
+import { dataset, datasets, embedded, fit, once } from './tool.mjs';
 
 const rig = ['--rig', dataset('textbook_rig.json')];
 const reportOf = (name, ...flags) => once(() => embedded(fit(name, ...flags).url));
@@ -26,3 +26,7 @@ export const makeOdd = reportOf('odd', '--data', runs(1, 2, 3, 4), ...joint);
 
 /** A joint fit without a result. */
 export const makeJointFailed = reportOf('joint_failed', '--data', runs(1, 2, 3), '--fix', 'inertia=10');
+
+/** A report of files in a folder whose path is wider than a phone and has no place to break a line. */
+export const withLongPaths = (content) =>
+  JSON.parse(JSON.stringify(content).replaceAll(datasets, '/srv/modelling_laboratory/winter_term_2026/thursday_group_12/pendulum/'));
