@@ -46,8 +46,7 @@ void AddEstimate(const ParameterEstimate& parameter, ParameterOutcome& outcome) 
   outcome.estimate = parameter.estimate;
   outcome.std_error = TotalStdError(parameter.std_error, parameter.systematic);
   outcome.has_interval = parameter.lower95.has_value() || parameter.upper95.has_value();
-  const auto lower = TotalIntervalEnd(IntervalEnd::kLower, parameter.estimate, parameter.lower95, parameter.systematic);
-  const auto upper = TotalIntervalEnd(IntervalEnd::kUpper, parameter.estimate, parameter.upper95, parameter.systematic);
+  const auto [lower, upper] = TotalInterval95(parameter);
   outcome.covered = outcome.has_interval && lower.value_or(-kUnbounded) <= outcome.truth &&
                     outcome.truth <= upper.value_or(kUnbounded);
 }

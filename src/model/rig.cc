@@ -217,9 +217,8 @@ Result<RigValue> ReadValue(const Json& rig, const RigKey& key, const std::string
   const bool may_be_zero = key.name == "rod_mass";
   if (!json.is_object()) {
     ASSIGN_OR_RETURN(const double number, ReadNumber(json, Quoted(key.name), may_be_zero, name));
-    return RigValue{number, NominalStdDev(key.quantity, number)};
+    return RigValue{number, StdDevOfEntry(key, json)};
   }
-  RigValue value;
   for (const auto& item : json.items()) {
     const std::string& part = item.key();
     const bool is_value = part == "value";
@@ -230,11 +229,9 @@ Result<RigValue> ReadValue(const Json& rig, const RigKey& key, const std::string
     const Result<double> read =
         ReadNumber(item.value(), Quoted(part) + " of " + Quoted(key.name), may_be_zero || !is_value, name);
     if (!read) return tl::unexpected(read.error());
-    (is_value ? value.value : value.std_dev) = *read;
   }
   if (!json.contains("value")) return Fault(name, Quoted(key.name) + R"( has no "value"; add it)");
-  if (!json.contains("std_dev")) value.std_dev = NominalStdDev(key.quantity, value.value);
-  return value;
+  return RigValue{ValueOfEntry(json), StdDevOfEntry(key, json)};
 }
 
 /// Whether products and squares of the value stay finite and nonzero.
@@ -244,23 +241,28 @@ bool IsUsable(const RigValue& value) {
   return value.value > kSmallest && value.value < kLargest && std::isfinite(value.std_dev);
 }
 
+/// The rig that the values describe, without its name, source and errors.
+Rig RigOf(const Form& form, const RigValues& values) {
+  Rig rig;
+  rig.inertia = Find(values, "inertia");
+  rig.gravity = Find(values, "gravity");
+  rig.length = Find(values, "length");
+  rig.mass = Find(values, "mass");
+  form.set(values, rig);
+  return rig;
+}
+
 /// The errors of all values that give the restoring torque.
-std::vector<RigError> ErrorsOf(const Json& source, const Form& form, const RigValues& values, const Rig& rig) {
+std::vector<RigError> ErrorsOf(const Json& source, const Form& form, const RigValues& values) {
   std::vector<RigError> errors;
-  if (!rig.gives_torque) return errors;
   for (const RigKey& key : kRigKeys) {
-    const std::optional<RigValue> value = Find(values, key.name);
-    if (!value || !(value->std_dev > 0)) continue;
+    if (!values.contains(key.name)) continue;
     RigValues alone = values;
     for (auto& [name, other] : alone) other.std_dev = name == key.name ? other.std_dev : 0;
-    Rig with_one = rig;
-    for (const auto& [of_rig, name] : {std::pair{&with_one.gravity, "gravity"}, std::pair{&with_one.length, "length"},
-                                       std::pair{&with_one.mass, "mass"}}) {
-      *of_rig = Find(alone, name);
-    }
-    form.set(alone, with_one);
-    const double of_torque = with_one.gravity_torque.std_dev / with_one.gravity_torque.value;
-    if (of_torque > 0) errors.push_back({key.name, value->std_dev, !HasStdDev(source.at(key.name)), of_torque});
+    const Rig rig = RigOf(form, alone);
+    const double of_torque = rig.gravity_torque.std_dev / rig.gravity_torque.value;
+    if (of_torque > 0)
+      errors.push_back({key.name, values.at(key.name).std_dev, !HasStdDev(source.at(key.name)), of_torque});
   }
   return errors;
 }
@@ -293,13 +295,7 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
     ASSIGN_OR_RETURN(const RigValue value, ReadValue(source, key, name));
     values[key.name] = value;
   }
-  Rig rig;
-  rig.name = name;
-  rig.inertia = Find(values, "inertia");
-  rig.gravity = Find(values, "gravity");
-  rig.length = Find(values, "length");
-  rig.mass = Find(values, "mass");
-  form.set(values, rig);
+  Rig rig = RigOf(form, values);
   const bool are_usable = std::ranges::all_of(
       std::array{std::optional(rig.gravity_torque), rig.inertia, rig.known_inertia, rig.gravity, rig.length, rig.mass},
       [](const std::optional<RigValue>& value) { return !value || IsUsable(*value); });
@@ -308,7 +304,8 @@ Result<Rig> ParseRig(std::string_view text, const std::string& name) {
                  "these values give a torque or inertia outside 1e-30 to 1e30 (SI), which is impossible for a "
                  "pendulum; correct them");
   }
-  rig.errors = ErrorsOf(source, form, values, rig);
+  rig.name = name;
+  rig.errors = ErrorsOf(source, form, values);
   rig.source = std::move(source);
   return rig;
 }

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "pendulum/base/median.h"
+
 /// Times that a program counted instead of measuring.
 namespace pendulum {
 
@@ -25,9 +27,7 @@ inline double LastPlace(const Eigen::VectorXd& numbers) {
 inline Eigen::VectorXd RowsOf(const Eigen::VectorXd& time) {
   const Eigen::VectorXd steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
   if (!(steps.array() > 0).all()) return {};
-  std::vector<double> sorted(steps.begin(), steps.end());
-  std::ranges::nth_element(sorted, sorted.begin() + steps.size() / 2);
-  const double median = sorted[static_cast<std::size_t>(steps.size() / 2)];
+  const double median = Median({steps.begin(), steps.end()});
   double sum = 0, count = 0;  // of single steps
   for (const double step : steps) {
     if (std::round(step / median) != 1) continue;

@@ -59,13 +59,8 @@ struct Remedy {
   std::string_view text;
 };
 
-/// What replaces a size that was assumed or stated.
-constexpr std::array kRemedies = {Remedy{"gain", "calibrate the sensor"},
-                                  Remedy{"nonlinearity", "calibrate the sensor at seven angles or more"},
-                                  Remedy{"lag", "measure the sensor's delay (--sensor)"},
-                                  Remedy{"backlash", "fix the sensor's coupling (--sensor)"},
-                                  Remedy{"drift", "let the sensor warm up (--sensor)"},
-                                  Remedy{"clock", "compare the recorder's clock with a watch (--sensor)"},
+/// How to know the clock, the calibration or a value of the rig better.
+constexpr std::array kRemedies = {Remedy{"clock", "compare the recorder's clock with a watch (--sensor)"},
                                   Remedy{"calibration", "calibrate at more angles"},
                                   Remedy{"bob_mass", "weigh the bob on better scales"},
                                   Remedy{"rod_mass", "weigh the rod on better scales"},
@@ -76,6 +71,14 @@ constexpr std::array kRemedies = {Remedy{"gain", "calibrate the sensor"},
                                   Remedy{"gravity", "look up the local g"},
                                   Remedy{"gravity_torque", "weigh the pendulum held horizontal"},
                                   Remedy{"stiffness", "measure the stiffness with known torques"}};
+
+/// How to make a line smaller; empty if nothing is known.
+std::string_view RemedyFor(const BudgetLine& line) {
+  const auto* const cause = std::ranges::find(kCauses, line.name, CauseName);
+  if (cause != kCauses.end() && IsOfSensor(*cause)) return RemedyFor(*cause);
+  const auto* const remedy = std::ranges::find(kRemedies, line.name, &Remedy::name);
+  return remedy == kRemedies.end() ? "" : remedy->text;
+}
 
 /// The size of an error relative to an estimate: "± 0.35 %".
 std::string RelativeText(double error, double estimate) {
@@ -170,13 +173,13 @@ std::string LargestErrorText(const FitReport& fit) {
     const ParameterEstimate& parameter = fit.parameters[i];
     const auto part_of = [&](const BudgetLine& line) { return line.parts[static_cast<Eigen::Index>(i)]; };
     const BudgetLine& largest = *std::ranges::max_element(lines, {}, part_of);
-    const auto* const remedy = std::ranges::find(kRemedies, largest.name, &Remedy::name);
-    if (remedy == kRemedies.end() || !largest.source) continue;
+    const std::string_view remedy = RemedyFor(largest);
+    if (remedy.empty() || !largest.source) continue;
     const double total = *TotalStdError(parameter.std_error, parameter.systematic);
     const double left = ErrorWithout(part_of(largest), parameter.systematic.Of(*largest.source), total);
     if (!(total > best * left)) continue;
     best = total / left;
-    text = "Largest error: " + InWords(largest.name) + "; " + std::string(remedy->text) + ": " +
+    text = "Largest error: " + InWords(largest.name) + "; " + std::string(remedy) + ": " +
            std::string(parameter.info.name) + " " + RelativeText(total, parameter.estimate) + ", at best " +
            RelativeText(left, parameter.estimate) + ".";
   }

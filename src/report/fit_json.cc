@@ -37,10 +37,8 @@ Json ErrorBudgetJson(const std::optional<double>& std_error, const SystematicErr
 /// The 95 % interval with all errors, of a ParameterEstimate or DerivedQuantity.
 template <typename Estimated>
 Json TotalIntervalJson(const Estimated& quantity) {
-  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
-    return TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic);
-  };
-  return IntervalJson(end(IntervalEnd::kLower, quantity.lower95), end(IntervalEnd::kUpper, quantity.upper95));
+  const auto [lower, upper] = TotalInterval95(quantity);
+  return IntervalJson(lower, upper);
 }
 
 Json ParameterJson(const ParameterEstimate& parameter) {

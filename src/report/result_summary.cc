@@ -138,10 +138,7 @@ struct Interval {
 /// The total 95 % interval of a ParameterEstimate or DerivedQuantity, in its unit; absent without both ends.
 template <typename Estimated>
 std::optional<Interval> TotalIntervalOf(const Estimated& quantity) {
-  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
-    return TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic);
-  };
-  const auto lower = end(IntervalEnd::kLower, quantity.lower95), upper = end(IntervalEnd::kUpper, quantity.upper95);
+  const auto [lower, upper] = TotalInterval95(quantity);
   return lower && upper ? std::optional(Interval{*lower, *upper}) : std::nullopt;
 }
 

@@ -248,13 +248,6 @@ class EffectTests {
   std::vector<Cause> corrected_;
 };
 
-std::string UnitOf(Cause cause, const Recording& recording) {
-  if (cause == Cause::kGain) return "1";
-  if (cause == Cause::kLag) return "s";
-  if (cause == Cause::kPush) return "rad/s";
-  return recording.value_unit();
-}
-
 /// The size of a single effect, or the largest change of the readings by several without what the parameters take up.
 void SetSize(const EffectTests& tests, const EffectSums& sums, const WeightedRows& rows,
              const std::vector<Index>& columns, Suspicion& suspicion) {
@@ -343,6 +336,13 @@ Correction CorrectionOf(const EffectTests& tests, const Correction& known, const
 }
 
 }  // namespace
+
+std::string UnitOf(Cause cause, const Recording& recording) {
+  if (cause == Cause::kGain) return "1";
+  if (cause == Cause::kLag) return "s";
+  if (cause == Cause::kPush) return "rad/s";
+  return recording.value_unit();
+}
 
 EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, const TrajectoryCost& cost,
                          const Solution& solution, const Optimum& optimum, const Correction& known) {

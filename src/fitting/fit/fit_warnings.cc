@@ -333,9 +333,11 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
 
 std::string_view FlagFor(Cause cause) { return TextOf(cause).flag; }
 
+std::string_view RemedyFor(Cause cause) { return TextOf(cause).advice; }
+
 std::string AdviceFor(Cause cause) {
-  const CauseText text = TextOf(cause);
-  return std::string(text.advice) + (text.flag.empty() ? "" : " (" + std::string(text.flag) + ")");
+  const std::string_view flag = FlagFor(cause);
+  return std::string(RemedyFor(cause)) + (flag.empty() ? "" : " (" + std::string(flag) + ")");
 }
 
 std::string SizeText(const Suspicion& suspicion) {

@@ -132,25 +132,19 @@ Eigen::VectorXd EstimatesByScale(const Eigen::VectorXd& powers, const SolvedFit&
   return follows;
 }
 
-/// The effect whose size a cause in the sensor has, and the unit of it.
-struct SizeOfCause {
-  const EffectSize& size;
-  std::string unit;
-};
-
-std::optional<SizeOfCause> SizeOf(Cause cause, const Recording& recording) {
-  const SensorErrors& sensor = recording.sensor_errors;
+/// The size of the effect by which a cause acts in the sensor; nullptr for other causes.
+const EffectSize* SizeOf(Cause cause, const SensorErrors& sensor) {
   switch (cause) {
-    case Cause::kGain: return SizeOfCause{sensor.Of(SensorEffect::kGain), "1"};
+    case Cause::kGain: return &sensor.Of(SensorEffect::kGain);
     case Cause::kNonlinearity: {
       const EffectSize& cubic = sensor.Of(SensorEffect::kCubic);
       const EffectSize& eccentric = sensor.Of(SensorEffect::kEccentricSine);
-      return SizeOfCause{cubic.std_dev > eccentric.std_dev ? cubic : eccentric, recording.value_unit()};
+      return cubic.std_dev > eccentric.std_dev ? &cubic : &eccentric;
     }
-    case Cause::kLag: return SizeOfCause{sensor.Of(SensorEffect::kLag), "s"};
-    case Cause::kBacklash: return SizeOfCause{sensor.Of(SensorEffect::kBacklash), recording.value_unit()};
-    case Cause::kDrift: return SizeOfCause{sensor.Of(SensorEffect::kDrift), recording.value_unit()};
-    default: return std::nullopt;
+    case Cause::kLag: return &sensor.Of(SensorEffect::kLag);
+    case Cause::kBacklash: return &sensor.Of(SensorEffect::kBacklash);
+    case Cause::kDrift: return &sensor.Of(SensorEffect::kDrift);
+    default: return nullptr;
   }
 }
 
@@ -163,12 +157,12 @@ std::vector<SourceLine> SensorLines(const Recording& recording, const EffectChec
     const std::string name(CauseName(cause));
     auto line = std::ranges::find(lines, name, &SourceLine::name);
     if (line == lines.end()) {
-      const std::optional<SizeOfCause> of = SizeOf(cause, recording);
-      line = lines.insert(line,
-                          of && of->size.std_dev > 0
-                              ? SourceLine{name, of->size.SourceText(), of->size.is_assumed, of->size.std_dev, of->unit}
-                              : SourceLine{name, "suggested by the readings", false, std::nullopt, ""});
-      if (!line->std_dev) line->type = EvaluationType::kA;
+      const EffectSize* const size = SizeOf(cause, recording.sensor_errors);
+      const bool has_size = size != nullptr && size->std_dev > 0;
+      line = lines.insert(line, has_size ? SourceLine{name, size->SourceText(), size->is_assumed, size->std_dev,
+                                                      UnitOf(cause, recording)}
+                                         : SourceLine{name, "suggested by the readings", false, std::nullopt, ""});
+      if (!has_size) line->type = EvaluationType::kA;
       line->columns.clear();
     }
     line->columns.push_back(static_cast<Index>(k));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,6 +43,10 @@ struct EffectCheck {
   Eigen::VectorXd named_friction;
   Correction correction;  ///< For the named causes that can be corrected and are plausible, and for former ones.
 };
+
+/// The unit in which the size of a cause is given: "1" for the gain, "s" for the lag, "rad/s" for a push, otherwise
+/// that of the readings.
+std::string UnitOf(Cause cause, const Recording& recording);
 
 /// Estimates all effects (EffectColumnsAt) at an optimum from the residuals, by one step of generalized least squares
 /// with the plausible sizes as priors, and tests each cause by its score (MODEL.md section 16). The autocorrelation of

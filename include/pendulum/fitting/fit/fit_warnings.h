@@ -34,7 +34,10 @@ std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& p
 /// the readings were not corrected although they can be.
 void WarnOfSuspicions(bool is_correctable, FitReport& report);
 
-/// What to measure, or which flag to set, with the flag.
+/// What to measure or to set.
+std::string_view RemedyFor(Cause cause);
+
+/// The remedy with its flag.
 std::string AdviceFor(Cause cause);
 
 /// The flag of the advice, "--calibration"; empty if there is none.

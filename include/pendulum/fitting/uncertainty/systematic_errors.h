@@ -30,7 +30,7 @@ struct BudgetLine {
   std::optional<ErrorSource> source;  ///< The source to which it belongs; absent: noise.
   EvaluationType type = EvaluationType::kA;
   std::string name;               ///< "rod_length", "gain", "clock", "calibration"
-  std::string origin;             ///< Of its size: "assumed for a potentiometer", "stated in the rig"
+  std::string origin;             ///< Of its size: "assumed for a potentiometer", "stated with the rig"
   bool is_assumed = false;        ///< Nobody stated its size.
   std::optional<double> std_dev;  ///< Its size before the recording; absent if it is not one number.
   std::string unit;               ///< Of std_dev; "1" if relative.
@@ -70,5 +70,19 @@ enum class IntervalEnd { kLower, kUpper };
 /// systematic errors, in quadrature. Absent if the statistical interval has no such end.
 std::optional<double> TotalIntervalEnd(IntervalEnd end, double estimate, const std::optional<double>& end95,
                                        const SystematicErrors& systematic);
+
+/// The ends of an interval that may be open.
+struct IntervalEnds95 {
+  std::optional<double> lower, upper;
+};
+
+/// The total 95 % interval of a ParameterEstimate or DerivedQuantity, in its unit.
+template <typename Estimated>
+IntervalEnds95 TotalInterval95(const Estimated& quantity) {
+  const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
+    return TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic);
+  };
+  return {end(IntervalEnd::kLower, quantity.lower95), end(IntervalEnd::kUpper, quantity.upper95)};
+}
 
 }  // namespace pendulum
