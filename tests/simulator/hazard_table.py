@@ -60,8 +60,8 @@ def run(tool: pathlib.Path, name: str, seed: int) -> judging.Outcome:
     lab.rng = numpy.random.default_rng([seed, zlib.crc32(name.encode())])
     row.change(lab)
     with tempfile.TemporaryDirectory() as folder:
-        return judging.fit(tool, pathlib.Path(folder), record(lab), row.model, row.parameters, row.kind == "exact",
-                           row.optional)
+        return judging.fit(tool, pathlib.Path(folder), record(lab), row.model, row.parameters,
+                           judging.EXACT_SENSOR if row.kind == "exact" else None, row.optional)
 
 
 def table_of(tool: pathlib.Path, names: list[str], count: int, jobs: int, path: pathlib.Path | None) -> list[dict]:

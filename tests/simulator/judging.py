@@ -168,13 +168,13 @@ def has_error(parameter: dict | None) -> bool:
 
 
 def fit(tool: pathlib.Path, folder: pathlib.Path, recording, model: str, parameters: tuple[str, ...],
-        is_stated: bool = False, optional: tuple[str, ...] = ()) -> Outcome:
-    """Fits a recording in a folder as a user would, and judges the result. The user may state that the sensor is ideal."""
+        sensor: dict | None = None, optional: tuple[str, ...] = ()) -> Outcome:
+    """Fits a recording in a folder as a user would, and judges the result. `sensor` is what the user states of it."""
     (folder / "run.csv").write_text(recording.text, encoding="utf-8")
     (folder / "rig.json").write_text(json.dumps(recording.rig), encoding="utf-8")
     command = [str(tool), "--data", "run.csv", "--rig", "rig.json", "--model", model, "--json", "fit.json"]
-    if is_stated:
-        (folder / "sensor.json").write_text(json.dumps(EXACT_SENSOR), encoding="utf-8")
+    if sensor is not None:
+        (folder / "sensor.json").write_text(json.dumps(sensor), encoding="utf-8")
         command += ["--sensor", "sensor.json"]
     output = folder / "fit.json"
     output.unlink(missing_ok=True)

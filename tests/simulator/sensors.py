@@ -10,6 +10,7 @@ import dataclasses
 import math
 
 import numpy
+from numpy.polynomial.legendre import legval
 from scipy.signal import lfilter
 
 import noise
@@ -23,7 +24,7 @@ WARM_UP = 0.5  # s before the first sample
 
 @dataclasses.dataclass(frozen=True)
 class Curve:
-    """What the sensor shows for an angle x: x + gain x + cubic x (x/scale)^2 + waves + eccentricity."""
+    """What the sensor shows for an angle x: x + gain x + cubic x (x/scale)^2 + waves + eccentricity + bends(x/scale)."""
 
     gain: float = 0.0
     cubic: float = 0.0  # share of the angle at `scale`
@@ -33,6 +34,7 @@ class Curve:
     wave_phase: float = 0.0
     eccentricity: float = 0.0  # rad, amplitude of a sine over a turn
     eccentric_phase: float = 0.0
+    bends: tuple[float, ...] = ()  # rad, coefficients of Legendre's polynomials
 
     def __call__(self, angle: Array) -> Array:
         shown = angle * (1 + self.gain + self.cubic * (angle / self.scale) ** 2)
@@ -40,6 +42,8 @@ class Curve:
             shown = shown + self.wave * numpy.sin(2 * math.pi * angle / self.wave_length + self.wave_phase)
         if self.eccentricity:
             shown = shown + self.eccentricity * numpy.sin(angle + self.eccentric_phase)
+        if self.bends:
+            shown = shown + legval(angle / self.scale, self.bends)
         return shown
 
 

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Counts how often fit_pendulum's total intervals contain the truth if defects are drawn from what the user states of them.
+
+  coverage_study.py BIN_DIR [--count 2000] [--jobs 2] [--cells 'gain,lag*'] [--json OUT.json]
+
+A cell is one or more causes. Each recording of the textbook rig has a size of each of them, drawn from the standard
+deviation that its user states with --sensor or in the rig; the other causes have none, which is stated too. In the cell
+`defaults` the user states nothing and all causes are drawn from what is assumed for an angle sensor
+(src/docs/rigs_and_calibration.md); in the cell `clean` all is exact. Exit code 1 if the share of 95 % intervals that contain
+the truth is outside COVERAGE, or the root mean square of z is below LEAST_Z, for a parameter of a cell.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import fnmatch
+import json
+import math
+import os
+import pathlib
+import sys
+import tempfile
+import zlib
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy  # noqa: E402, because it reads the environment when it is imported
+
+import judging  # noqa: E402
+from lab import RIG, Lab, record, textbook_lab  # noqa: E402
+from row_summary import LEAST_JUDGED, of_parameter  # noqa: E402
+from scenarios import ANGLE, DEG  # noqa: E402
+
+FIRST_SEED = 200_000
+COVERAGE = (0.93, 0.97)
+LEAST_Z = 0.4
+ORDERS = 7  # of Legendre's polynomials, the bent curve of a sensor: 0 and 2 to 6
+WARMING = 5  # time constants of a warm-up in a recording
+# Standard deviations: relative, rad, s. As --sensor states them, and as they are assumed for an angle sensor and its clock.
+STATED = {"gain": 0.01, "nonlinearity": 0.1 * DEG, "lag": 0.005, "backlash": 0.05 * DEG, "drift": 0.05 * DEG, "clock": 0.003}
+ASSUMED = {"gain": 0.01, "nonlinearity": 0.25 * DEG, "lag": 0.012, "backlash": 0.05 * DEG, "drift": 0.05 * DEG, "clock": 5e-5}
+ASSUMED_CUBIC = 0.01  # of the amplitude
+# Those of a rig: kg, m, m/s^2.
+RIG_SIZES = {"bob_mass": 0.001, "rod_mass": 0.001, "rod_length": 0.001, "gravity": 0.015}
+CELLS = {"clean": (), **{name: (name,) for name in (*STATED, "rig")},
+         "gain, lag, clock": ("gain", "lag", "clock"),
+         "nonlinearity, backlash, drift": ("nonlinearity", "backlash", "drift"),
+         "rig, gain, drift": ("rig", "gain", "drift"),
+         "lag, nonlinearity, clock": ("lag", "nonlinearity", "clock"),
+         "defaults": tuple(ASSUMED)}
+
+
+def draw_sensor(lab: Lab, causes: tuple[str, ...], sizes: dict[str, float]) -> None:
+    """Draws the sizes of the sensor's causes. A lag and a play have one sign."""
+    def draw(cause: str) -> float:
+        return lab.rng.normal(0, sizes[cause]) if cause in causes else 0.0
+
+    scale = abs(lab.hand.angle)
+    bends = [0.0 if order == 1 else draw("nonlinearity") for order in range(ORDERS)]
+    if sizes is ASSUMED:
+        bends[3] *= ASSUMED_CUBIC * scale / sizes["nonlinearity"]
+    lab.set_curve(gain=draw("gain"), bends=tuple(bends), scale=scale)
+    lab.set("sensor", delay=abs(draw("lag")), play=abs(draw("backlash")), drift=draw("drift"), thermal=draw("drift"),
+            thermal_time=lab.duration / WARMING)
+    lab.set("clock", drift=draw("clock"))
+
+
+def draw_rig(lab: Lab) -> None:
+    """Draws the rig's true values about those that its user states, with their errors."""
+    true = {key: value + lab.rng.normal(0, RIG_SIZES[key]) for key, value in RIG.items()}
+    length, bob, rod = true["rod_length"], true["bob_mass"], true["rod_mass"]
+    lab.set("body", gravity_torque=(bob + rod / 2) * true["gravity"] * length, mass=bob + rod, gravity=true["gravity"],
+            inertia=(bob + rod / 3) * length**2)
+    lab.rig = {key: {"value": value, "std_dev": RIG_SIZES[key]} for key, value in RIG.items()}
+
+
+def run(tool: pathlib.Path, cell: str, seed: int) -> judging.Outcome:
+    """Simulates and fits one recording."""
+    lab, causes = textbook_lab(seed), CELLS[cell]
+    lab.rng = numpy.random.default_rng([seed, zlib.crc32(cell.encode())])
+    is_stated = cell != "defaults"
+    draw_sensor(lab, causes, STATED if is_stated else ASSUMED)
+    if "rig" in causes:
+        draw_rig(lab)
+    sensor = judging.EXACT_SENSOR | {cause: STATED[cause] for cause in causes if cause in STATED} if is_stated else None
+    with tempfile.TemporaryDirectory() as folder:
+        return judging.fit(tool, pathlib.Path(folder), record(lab), "coulomb", ANGLE, sensor)
+
+
+def summary(cell: str, outcomes: list[judging.Outcome]) -> dict:
+    """What the recordings of a cell say together."""
+    by_name = collections.defaultdict(list)
+    for outcome in outcomes:
+        for name, each in outcome.judged.items():
+            by_name[name].append(each)
+    return {"cell": cell, "recordings": len(outcomes),
+            "judged": sum(map(len, by_name.values())), "expected": sum(outcome.expected for outcome in outcomes),
+            "named": sum(bool(outcome.all_causes) for outcome in outcomes),
+            "z": {name: of_parameter(by_name[name]) for name in ANGLE if by_name[name]}}
+
+
+def faults(found: dict) -> list[str]:
+    """Why a cell does not pass; empty if it does. The limits allow for two standard deviations of a finite count."""
+    low, high = COVERAGE
+    spread = 2 * math.sqrt(0.05 * 0.95 / found["recordings"])
+    faulty = [f"{name} covered {each['coverage']:.3f}, rms z {each['rms']:.2f}" for name, each in found["z"].items()
+              if not low - spread <= each["coverage"] <= high + spread or each["rms"] < LEAST_Z]
+    if found["judged"] < LEAST_JUDGED * found["expected"]:
+        faulty.append(f"{found['expected'] - found['judged']} of {found['expected']} without an error")
+    return faulty
+
+
+def line(found: dict) -> str:
+    """A row of the printed table: coverage and rms z of each parameter."""
+    numbers = "".join(f"{each['coverage']:7.3f} {each['rms']:5.2f}" for each in found["z"].values())
+    return f"{found['cell']:30}{found['named']:6} {numbers}  {'; '.join(faults(found)) or 'passes'}"
+
+
+def main() -> int:
+    """Runs the cells, prints a row of each and returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin_dir", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=2000, help="recordings of each cell")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--cells", default="*", help="patterns with semicolons between them")
+    parser.add_argument("--json", type=pathlib.Path)
+    arguments = parser.parse_args()
+    tool = arguments.bin_dir.resolve() / "fit_pendulum"
+    if not tool.exists():
+        parser.error(f"there is no {tool}")
+    cells = [cell for cell in CELLS if any(fnmatch.fnmatch(cell, part) for part in arguments.cells.split(";"))]
+    print(f"{'cell':30}{'named':>6} " + "".join(f"{name[:12]:>13}" for name in ANGLE))
+    rows = []
+    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
+        work = {cell: [pool.submit(run, tool, cell, FIRST_SEED + index) for index in range(arguments.count)] for cell in cells}
+        for cell, of_cell in work.items():
+            rows.append(summary(cell, [future.result() for future in of_cell]))
+            print(line(rows[-1]), flush=True)
+            if arguments.json:
+                arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    return 1 if any(map(faults, rows)) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
