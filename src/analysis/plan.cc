@@ -64,13 +64,7 @@ SyntheticOptions WithAmplitude(SyntheticOptions run, double from, double to) {
   return run;
 }
 
-/// One case of the plan: a row without results, and its recording.
-struct Case {
-  PlanRow row;
-  SyntheticOptions run;
-};
-
-void AddAmplitudes(const SyntheticOptions& base, std::vector<Case>& cases) {
+void AddAmplitudes(const SyntheticOptions& base, std::vector<PlanRow>& rows) {
   const std::optional<double> amplitude = Amplitude(base);
   if (!amplitude || *amplitude == 0) return;
   const std::string_view name = base.start == StartKind::kRelease ? kReleaseAngle.name : "amplitude";
@@ -78,30 +72,31 @@ void AddAmplitudes(const SyntheticOptions& base, std::vector<Case>& cases) {
     const double value = factor == 1 ? *amplitude : std::min(factor * *amplitude, kLargestPlannedAmplitude);
     if (factor > 1 && value <= *amplitude) continue;
     const SyntheticOptions run = factor == 1 ? base : WithAmplitude(base, *amplitude, value);
-    cases.push_back({{name, "rad", value, factor == 1, {}, {}, {}}, run});
+    rows.push_back({name, "rad", value, factor == 1, {}, {}, {}, run});
   }
 }
 
-/// Adds cases with multiples of one of the options.
+/// Adds rows with multiples of one of the options.
 void AddMultiples(const SyntheticOptions& base, std::string_view name, std::string_view unit,
-                  double SyntheticOptions::*number, std::span<const double> factors, std::vector<Case>& cases) {
+                  double SyntheticOptions::*number, std::span<const double> factors, std::vector<PlanRow>& rows) {
   for (const double factor : factors) {
     SyntheticOptions run = base;
     run.*number *= factor;
-    cases.push_back({{name, unit, run.*number, factor == 1, {}, {}, {}}, run});
+    rows.push_back({name, unit, run.*number, factor == 1, {}, {}, {}, run});
   }
 }
 
-std::vector<Case> Cases(const SyntheticOptions& base) {
-  std::vector<Case> cases;
-  AddAmplitudes(base, cases);
-  AddMultiples(base, "duration", "s", &SyntheticOptions::duration, kDurationFactors, cases);
-  AddMultiples(base, "rate", "Hz", &SyntheticOptions::sample_rate, kOtherFactors, cases);
+/// The rows without results.
+std::vector<PlanRow> Rows(const SyntheticOptions& base) {
+  std::vector<PlanRow> rows;
+  AddAmplitudes(base, rows);
+  AddMultiples(base, "duration", "s", &SyntheticOptions::duration, kDurationFactors, rows);
+  AddMultiples(base, "rate", "Hz", &SyntheticOptions::sample_rate, kOtherFactors, rows);
   const std::string_view unit = base.quantity == Quantity::kAngle ? "rad" : "rad/s";
   if (base.resolution > 0) {
-    AddMultiples(base, "resolution", unit, &SyntheticOptions::resolution, kOtherFactors, cases);
+    AddMultiples(base, "resolution", unit, &SyntheticOptions::resolution, kOtherFactors, rows);
   }
-  return cases;
+  return rows;
 }
 
 /// The standard deviation of a reading's rounding (Widrow & Kollár, Quantization Noise, 2008).
@@ -117,7 +112,8 @@ std::vector<std::optional<double>> StdErrors(SyntheticOptions run, const Eigen::
   return CramerRaoBounds(run, time.tail(time.size() - first));
 }
 
-void Predict(const SyntheticOptions& run, PlanRow& row) {
+void Predict(PlanRow& row) {
+  const SyntheticOptions& run = row.run;
   const Result<Recording> recording = SimulateRecording(run);
   row.std_errors.resize(run.parameters.size() + 3);
   if (!recording) {
@@ -185,10 +181,8 @@ Result<Plan> MakePlan(const SyntheticOptions& base) {
   plan.truth = TrueParameters(base);
   plan.physical = base.parameters.size();
   if (base.noise == 0) plan.noise_of_levels = NoiseOfLevels(base.resolution);
-  for (Case& one : Cases(base)) {
-    Predict(one.run, one.row);
-    plan.rows.push_back(std::move(one.row));
-  }
+  plan.rows = Rows(base);
+  for (PlanRow& row : plan.rows) Predict(row);
   plan.amplitude_of_equal_bias = AmplitudeOfEqualBias(base, recording.time);
   return plan;
 }

@@ -52,6 +52,32 @@ std::vector<std::size_t> PhysicalWithErrors(const FitReport& fit) {
   return places;
 }
 
+// ---- Where an error comes from --------------------------------------------------------------------------------------
+
+/// What of the rig is measured.
+std::string RigWords(const std::optional<Rig>& rig) {
+  if (!rig || !rig->source.is_object()) return "rig";
+  const auto has = [&](const char* key) { return rig->source.contains(key); };
+  if (has("bob_mass")) return "masses and length";
+  if (has("center_of_mass")) return "mass, center";
+  if (has("gravity_torque")) return "gravity torque";
+  if (has("stiffness")) return "stiffness";
+  if (has("length")) return "length";
+  return has("inertia") ? "known inertia" : "rig";
+}
+
+std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
+  switch (source) {
+    case ErrorSource::kRig: return RigWords(rig);
+    case ErrorSource::kCalibration: return "calibration";
+    case ErrorSource::kClock: return "clock";
+    case ErrorSource::kSensor: return "sensor";
+    case ErrorSource::kInconstancy: return "change in time";
+    case ErrorSource::kFrictionLaw: return "another law";
+  }
+  return "";
+}
+
 // ---- How to make an error smaller -----------------------------------------------------------------------------------
 
 struct Remedy {
@@ -92,6 +118,25 @@ double ErrorWithout(double part, double of_source, double total) {
 }
 
 }  // namespace
+
+std::string MainSourcesText(double std_error, const SystematicErrors& systematic, const std::optional<Rig>& rig) {
+  constexpr double kMost = 0.8;
+  using Part = std::pair<double, std::optional<ErrorSource>>;  // variance; no source: noise
+  std::vector<Part> parts = {{std_error * std_error, std::nullopt}};
+  double total = parts.front().first;
+  for (const ErrorSource source : kErrorSources) {
+    parts.emplace_back(systematic.Of(source) * systematic.Of(source), source);
+    total += parts.back().first;
+  }
+  std::ranges::stable_sort(parts, std::ranges::greater(), &Part::first);
+  const auto short_name = [](const Part& part) -> std::string {
+    if (!part.second) return "noise";
+    if (*part.second == ErrorSource::kInconstancy) return "change";
+    return *part.second == ErrorSource::kFrictionLaw ? "law" : std::string(ErrorSourceName(*part.second));
+  };
+  if (parts[0].first < kMost * total) return short_name(parts[0]) + ", " + short_name(parts[1]);
+  return parts[0].second ? SourceWords(*parts[0].second, rig) : "noise";
+}
 
 std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
   std::vector<BudgetLine> lines;

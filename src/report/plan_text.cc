@@ -9,6 +9,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/physics.h"
 #include "pendulum/base/rounding.h"
+#include "pendulum/report/budget_sections.h"
 #include "pendulum/report/layout.h"
 #include "pendulum/report/text_parts.h"
 
@@ -51,10 +52,9 @@ std::string BiasCell(const std::optional<double>& share) {
   return NumberText(std::abs(*share) < kRounding ? 0.0 : 100 * *share, kErrorDigits);
 }
 
-std::string ErrorCell(const Plan& plan, const Units& units, const PlanRow& row, std::size_t i) {
-  if (!row.std_errors[i]) return "-";
-  const double error = *row.std_errors[i];
-  return ErrorText(units.IsPercent(i) ? 100 * error / std::abs(plan.truth[i]) : units.Factor(i) * error);
+std::string ErrorCell(const Plan& plan, const Units& units, const std::optional<double>& error, std::size_t i) {
+  if (!error) return "-";
+  return ErrorText(units.IsPercent(i) ? 100 * *error / std::abs(plan.truth[i]) : units.Factor(i) * *error);
 }
 
 /// A value; angles and rates are also given in degrees.
@@ -64,23 +64,84 @@ std::string ValueText(double value, std::string_view unit) {
   return text + " (" + NumberText(value / kRadFromDeg, kDegreeDigits) + " deg" + std::string(unit.substr(3)) + ")";
 }
 
-/// The parameters of the base case.
-std::string BaseText(const Plan& plan, const Units& units, const PlanRow& base) {
+/// Where the total error of a parameter comes from.
+std::string SourceOf(const Plan& plan, std::size_t i, const std::optional<Rig>& rig) {
+  const auto fitted = std::ranges::find(plan.fit->parameters, plan.parameters[i].name,
+                                        [](const ParameterEstimate& one) { return one.info.name; });
+  if (fitted == plan.fit->parameters.end() || !fitted->std_error) return "";
+  return MainSourcesText(*fitted->std_error, fitted->systematic, rig);
+}
+
+/// The parameters of the base case, with total errors if these are known.
+std::string BaseText(const Plan& plan, const Units& units, const PlanRow& base, const std::optional<Rig>& rig) {
+  const bool has_totals = plan.fit.has_value();
+  const std::string_view percent = " %";
   std::vector<Cells> rows;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
     const double value = units.Factor(i) * plan.truth[i];
     Cells cells = {std::string(plan.parameters[i].name), NumberText(value, kPlanDigits), "± -", units.Name(i), ""};
-    if (base.std_errors[i]) {
-      const ValueAndError text = PdgText(value, units.Factor(i) * *base.std_errors[i]);
+    const std::optional<double>& error = has_totals ? base.total_errors[i] : base.std_errors[i];
+    if (error) {
+      const ValueAndError text = PdgText(value, units.Factor(i) * *error);
       cells[1] = text.value;
       cells[2] = "± " + text.error;
-      if (units.IsPercent(i)) cells[4] = ErrorCell(plan, units, base, i) + " %";
+      if (units.IsPercent(i)) cells[4] = ErrorCell(plan, units, error, i).append(percent);
+    }
+    if (has_totals) {
+      const std::string noise = ErrorCell(plan, units, base.std_errors[i], i);
+      cells.push_back(units.IsPercent(i) && base.std_errors[i] ? noise + std::string(percent) : noise);
+      cells.push_back(error ? SourceOf(plan, i, rig) : "");
     }
     rows.push_back(cells);
   }
-  return std::string("[[Predicted standard errors]] ") +
-         (plan.noise_of_levels ? "(of least squares)\n" : "(Cramér-Rao: no unbiased fit has smaller ones)\n") +
-         AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kTextIndent);
+  const std::string bound =
+      plan.noise_of_levels ? "of least squares" : "the Cramér-Rao bound, no unbiased fit has less";
+  if (!has_totals) {
+    return "[[Predicted standard errors]] (" + bound + ")\n" +
+           AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kTextIndent);
+  }
+  return "[[Predicted errors]] (noise: " + bound + ")\n" +
+         AlignedTable({{""}, {"value"}, {"± total"}, {"unit", false, 1}, {"total"}, {"noise"}, {"error from"}}, rows,
+                      kTextIndent);
+}
+
+/// The other recording that makes an error of inertia or friction smallest relative to what it is.
+std::string BestChangeText(const Plan& plan, const Units& units, const PlanRow& base) {
+  constexpr double kSmaller = 1.25;  // times
+  double best = kSmaller;
+  std::string text =
+      "No other amplitude, duration, rate or resolution makes an error of inertia or friction a fifth smaller.";
+  for (const PlanRow& row : plan.rows) {
+    for (std::size_t i = 0; i < plan.physical; ++i) {
+      const auto &now = base.total_errors[i], &then = row.total_errors[i];
+      if (!now || !then || !(*now > best * *then)) continue;
+      best = *now / *then;
+      const auto error = [&](const std::optional<double>& of) {
+        const std::string unit = units.IsPercent(i) ? "%" : units.Name(i);
+        return std::string("±").append(kNoBreak).append(ErrorCell(plan, units, of, i)).append(kNoBreak).append(unit);
+      };
+      text = "The recording that helps most: " + std::string(row.factor) + " " + ValueText(row.value, row.unit) + ": " +
+             std::string(plan.parameters[i].name) + " " + error(then) + " instead of " + error(now) + ".";
+    }
+  }
+  return text;
+}
+
+/// What is assumed of sensor and clock; empty if all is stated.
+std::string AssumedText(const SensorErrors& sensor) {
+  const EffectSize& clock = sensor.Of(SensorEffect::kClock);
+  const EffectSize& of_kind = sensor.Of(SensorEffect::kLag);
+  std::string text = sensor.is_kind_assumed ? of_kind.source : "";
+  if (clock.is_assumed) text += (text.empty() ? "" : ", ") + clock.source;
+  return text.empty() ? "" : "Assumed: " + text + " (--sensor).";
+}
+
+/// What makes the total errors smaller.
+std::string InvestmentText(const Plan& plan, const Units& units, const PlanRow& base) {
+  std::string text = LargestErrorText(*plan.fit);
+  text += (text.empty() ? "" : " ") + BestChangeText(plan, units, base);
+  const std::string assumed = AssumedText(plan.sensor);
+  return Prose(assumed.empty() ? text : text + " " + assumed);
 }
 
 std::vector<Column> FactorColumns(const Plan& plan) {
@@ -91,7 +152,8 @@ std::vector<Column> FactorColumns(const Plan& plan) {
 }
 
 /// A row with the unit of each column, and a blank line before each factor.
-std::string FactorTable(const Plan& plan, const Units& units) {
+std::string FactorTable(const Plan& plan, const Units& units, std::vector<std::optional<double>> PlanRow::*errors,
+                        const std::string& title) {
   const std::vector<Column> columns = FactorColumns(plan);
   Cells unit_cells(3);
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
@@ -104,11 +166,13 @@ std::string FactorTable(const Plan& plan, const Units& units) {
     if (row.factor != factor) rows.emplace_back(columns.size());
     factor = row.factor;
     Cells cells = {std::string(factor), ValueText(row.value, row.unit), row.is_base ? "*" : ""};
-    for (std::size_t i = 0; i < plan.parameters.size(); ++i) cells.push_back(ErrorCell(plan, units, row, i));
+    for (std::size_t i = 0; i < plan.parameters.size(); ++i)
+      cells.push_back(ErrorCell(plan, units, (row.*errors)[i], i));
     cells.push_back(BiasCell(row.linear_bias));
     rows.push_back(cells);
   }
-  return "\n[[One setting changed at a time]] (* the recording as given)\n" + AlignedTable(columns, rows, kTextIndent);
+  return "\n[[One setting changed at a time" + title + "]] (* the recording as given)\n" +
+         AlignedTable(columns, rows, kTextIndent);
 }
 
 bool HasMissingValues(const PlanRow& row) {
@@ -170,6 +234,7 @@ std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
             NumberText(*plan.noise_of_levels, kPlanDigits) + " " + std::string(plan.parameters.back().unit) +
             " (their spacing over √12), as in least squares; a fit that uses the levels is more accurate. ";
   }
+  if (plan.fit) return text;
   if (!rig)
     return text +
            "Torques and inertia are in units of the gravity torque G; with a rig, the error of G adds to theirs.";
@@ -184,13 +249,17 @@ std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
 std::string PlanText(const Plan& plan, const std::optional<Rig>& rig, TextExtent extent) {
   const Units units(plan, rig);
   const auto base = std::ranges::find_if(plan.rows, &PlanRow::is_base);
+  std::string text = BaseText(plan, units, *base, rig);
+  if (plan.fit) text += InvestmentText(plan, units, *base);
+  if (!plan.without_totals.empty()) text += Prose("Without sensor, clock and rig: " + plan.without_totals + ".");
+  const std::string bias = Prose(BiasText(plan, base->std_errors.front().has_value()));
   if (extent == TextExtent::kSummary) {
-    return BaseText(plan, units, *base) + Prose(BiasText(plan, base->std_errors.front().has_value())) +
-           Prose("More: --details (what another amplitude, duration, rate or resolution would give).");
+    return text + bias + Prose("More: --details (what another amplitude, duration, rate or resolution would give).");
   }
+  if (plan.fit) text += FactorTable(plan, units, &PlanRow::total_errors, ": total errors");
+  text += FactorTable(plan, units, &PlanRow::std_errors, plan.fit ? ": noise alone" : "");
   const std::string missing = MissingText(plan);
-  return BaseText(plan, units, *base) + FactorTable(plan, units) + (missing.empty() ? "" : "\n" + missing) +
-         "\n[[How to read it]]\n" + Prose(BiasText(plan, base->std_errors.front().has_value())) +
+  return text + (missing.empty() ? "" : "\n" + missing) + "\n[[How to read it]]\n" + bias +
          Prose(ReadingGuide(plan, rig));
 }
 

@@ -28,52 +28,6 @@
 namespace pendulum {
 namespace {
 
-// ---- Where an error comes from --------------------------------------------------------------------------------------
-
-/// What of the rig is measured.
-std::string RigWords(const std::optional<Rig>& rig) {
-  if (!rig || !rig->source.is_object()) return "rig";
-  const auto has = [&](const char* key) { return rig->source.contains(key); };
-  if (has("bob_mass")) return "masses and length";
-  if (has("center_of_mass")) return "mass, center";
-  if (has("gravity_torque")) return "gravity torque";
-  if (has("stiffness")) return "stiffness";
-  if (has("length")) return "length";
-  return has("inertia") ? "known inertia" : "rig";
-}
-
-std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
-  switch (source) {
-    case ErrorSource::kRig: return RigWords(rig);
-    case ErrorSource::kCalibration: return "calibration";
-    case ErrorSource::kClock: return "clock";
-    case ErrorSource::kSensor: return "sensor";
-    case ErrorSource::kInconstancy: return "change in time";
-    case ErrorSource::kFrictionLaw: return "another law";
-  }
-  return "";
-}
-
-/// The source that makes most of the variance in words, or the two largest sources by their short names.
-std::string MainSources(double std_error, const SystematicErrors& systematic, const std::optional<Rig>& rig) {
-  constexpr double kMost = 0.8;
-  using Part = std::pair<double, std::optional<ErrorSource>>;  // variance; no source: noise
-  std::vector<Part> parts = {{std_error * std_error, std::nullopt}};
-  double total = parts.front().first;
-  for (const ErrorSource source : kErrorSources) {
-    parts.emplace_back(systematic.Of(source) * systematic.Of(source), source);
-    total += parts.back().first;
-  }
-  std::ranges::stable_sort(parts, std::ranges::greater(), &Part::first);
-  const auto short_name = [](const Part& part) -> std::string {
-    if (!part.second) return "noise";
-    if (*part.second == ErrorSource::kInconstancy) return "change";
-    return *part.second == ErrorSource::kFrictionLaw ? "law" : std::string(ErrorSourceName(*part.second));
-  };
-  if (parts[0].first < kMost * total) return short_name(parts[0]) + ", " + short_name(parts[1]);
-  return parts[0].second ? SourceWords(*parts[0].second, rig) : "noise";
-}
-
 // ---- Quantities -----------------------------------------------------------------------------------------------------
 
 /// x with its trailing zeros, so that its digits say how precise it is.
@@ -110,7 +64,7 @@ SummaryQuantity QuantityOf(const ParameterEstimate& parameter, const std::option
   SummaryQuantity quantity = Quantity(std::string(parameter.info.name), std::string(parameter.info.symbol),
                                       parameter.estimate, total, parameter.unit);
   if (parameter.std_error) {
-    quantity.source = MainSources(*parameter.std_error, parameter.systematic, rig);
+    quantity.source = MainSourcesText(*parameter.std_error, parameter.systematic, rig);
   } else {
     quantity.source = parameter.fixed ? "fixed" : parameter.at_bound ? "at its bound" : "no error";
   }

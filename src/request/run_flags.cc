@@ -283,14 +283,6 @@ constexpr std::string_view kSensorSource = "given by --sensor";
 
 bool IsSensorText(const std::string& text) { return IsSensorKind(text) || text.find('{') != std::string::npos; }
 
-Result<void> ParseStatedSensor(const RunFlags& flags, IdentifyOptions& options) {
-  if (flags.sensor.empty()) return {};
-  auto statement = ParseSensorStatement(flags.sensor, "--sensor", std::string(kSensorSource));
-  if (!statement) return BadFlag(statement.error().message());
-  options.sensor = *std::move(statement);
-  return {};
-}
-
 /// Refuses flags that only a fit uses.
 Result<void> CheckClosedFormOnly(const RunFlags& flags) {
   if (!flags.closed_form_only) return {};
@@ -563,15 +555,22 @@ tl::unexpected<Status> NeedsFitError(std::string_view flag) {
   return BadFlag(std::string(flag) + " needs a fit, but --closed_form_only makes none; leave one of them out");
 }
 
-Result<std::string> ReadSensorFile(RunFlags& flags) {
-  if (flags.sensor.empty() || IsSensorText(flags.sensor)) return std::string();
-  auto text = ReadFile(flags.sensor, "sensor", kMaxJsonBytes);
+Result<std::string> ReadSensorFile(std::string& sensor) {
+  if (sensor.empty() || IsSensorText(sensor)) return std::string();
+  auto text = ReadFile(sensor, "sensor", kMaxJsonBytes);
   if (!text) {
     text.error().sentence += "; --sensor takes a file or a kind of sensor: " + NameList(SensorKinds());
     return text;
   }
-  RETURN_IF_ERROR(ParseSensorStatement(*text, flags.sensor, ""));
-  return std::exchange(flags.sensor, *std::move(text));
+  RETURN_IF_ERROR(ParseSensorStatement(*text, sensor, ""));
+  return std::exchange(sensor, *std::move(text));
+}
+
+Result<std::optional<SensorStatement>> StatedSensor(const std::string& sensor) {
+  if (sensor.empty()) return std::nullopt;
+  auto statement = ParseSensorStatement(sensor, "--sensor", std::string(kSensorSource));
+  if (!statement) return BadFlag(statement.error().message());
+  return *std::move(statement);
 }
 
 Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
@@ -595,7 +594,7 @@ Result<IdentifyOptions> MakeIdentifyOptions(const RunFlags& flags) {
   options.swing.release = release;
   ASSIGN_OR_RETURN(auto rig_values, RigValuesOf(flags.rig_values, options.notes));
   options.rig_values = std::move(rig_values);
-  RETURN_IF_ERROR(ParseStatedSensor(flags, options));
+  ASSIGN_OR_RETURN(options.sensor, StatedSensor(flags.sensor));
   RETURN_IF_ERROR(ParseReadOptions(flags, options.read));
   return options;
 }

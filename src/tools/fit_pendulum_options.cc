@@ -129,7 +129,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& given)
   RETURN_IF_ERROR(CheckData(flags));
   RETURN_IF_ERROR(CheckText(flags));
   RETURN_IF_ERROR(CheckClosedFormOnly(flags));
-  ASSIGN_OR_RETURN(auto sensor, ReadSensorFile(flags));
+  ASSIGN_OR_RETURN(auto sensor, ReadSensorFile(flags.sensor));
   ASSIGN_OR_RETURN(auto run, MakeIdentifyOptions(flags));
   static_cast<IdentifyOptions&>(options) = std::move(run);
   RETURN_IF_ERROR(ParseShared(flags, options));

@@ -154,7 +154,7 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
   if (flags.release == "all") {
     return BadFlag("--release all makes several results per run, but a batch stores one; give one release");
   }
-  RETURN_IF_ERROR(ReadSensorFile(flags));
+  RETURN_IF_ERROR(ReadSensorFile(flags.sensor));
   ASSIGN_OR_RETURN(auto run, MakeIdentifyOptions(flags));
   options.refit.threads = run.fit.threads;
   options.refit.run = std::move(run);

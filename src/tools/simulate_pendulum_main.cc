@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pendulum/analysis/plan.h"
+#include "pendulum/analysis/planned_budget.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/try.h"
 #include "pendulum/model/gravity/registry.h"
@@ -64,8 +65,10 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Where to write a list of the recordings as CSV: path, id, rig, seed and the parameter values; it is written "
        "last; - is standard output; default nowhere."},
       {"plan", &Flags::plan,
-       "Instead of simulating, predicts the standard error of each parameter (Cramér-Rao) and how amplitude, duration, "
-       "rate and resolution change it; default off."},
+       "Instead of simulating, predicts the error of each parameter by noise (Cramér-Rao), sensor, clock and rig, what "
+       "makes it smaller, and how amplitude, duration, rate and resolution change it; default off."},
+      {"sensor", &Flags::sensor,
+       "In a plan: what the sensor may do to the readings, as in fit_pendulum; default an angle sensor or a gyro."},
       {"details", &Flags::details,
        "In a plan: prints what other amplitudes, durations, rates and resolutions would give; default off."},
       {"count", &Flags::count,
@@ -114,7 +117,8 @@ Result<std::optional<Rig>> RigOf(const Flags& flags) {
 Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>& rig) {
   SyntheticOptions planned = options.synthetic;
   planned.lost_counts.clear();
-  ASSIGN_OR_RETURN(const Plan plan, MakePlan(planned));
+  ASSIGN_OR_RETURN(Plan plan, MakePlan(planned));
+  AddTotalErrors(rig, options.sensor, plan);
   return WriteOutputs(
       std::vector<Output>{{"-", PlanText(plan, rig, options.details ? TextExtent::kAll : TextExtent::kSummary)}});
 }

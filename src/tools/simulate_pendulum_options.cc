@@ -5,6 +5,7 @@
 
 #include "pendulum/base/try.h"
 #include "pendulum/request/flag_values.h"
+#include "pendulum/request/run_flags.h"
 
 namespace pendulum {
 namespace {
@@ -25,6 +26,7 @@ Result<void> CheckFiles(const SimulateFlags& flags) {
   if (!flags.positional.empty()) return BadFlag("'" + flags.positional.front() + "' does not belong to a flag");
   if (flags.plan) return CheckPlan(flags);
   if (flags.details) return BadFlag("--details belongs to a plan; add --plan, or leave it out");
+  if (!flags.sensor.empty()) return BadFlag("--sensor belongs to a plan; add --plan, or leave it out");
   if (flags.out.empty()) return BadFlag("--out is missing: the file for the recording, or - for standard output");
   if (flags.count < 1) return BadFlag("--count is " + std::to_string(flags.count) + "; it must be at least 1");
   if (flags.count > 1 && (IsStandardOutput(flags.out) || IsStandardOutput(flags.truth))) {
@@ -64,6 +66,9 @@ Result<SimulateOptions> MakeSimulateOptions(const SimulateFlags& flags, const st
   SimulateOptions options;
   static_cast<Simulation&>(options) = std::move(simulation);
   CopyFiles(flags, options);
+  std::string sensor = flags.sensor;
+  RETURN_IF_ERROR(ReadSensorFile(sensor));
+  ASSIGN_OR_RETURN(options.sensor, StatedSensor(sensor));
   return options;
 }
 

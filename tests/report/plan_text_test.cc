@@ -39,7 +39,7 @@ Plan ExamplePlan() {
 TEST(PlanText, ShowsTheBaseInSiAndRowsInPercent) {
   EXPECT_EQ(
       PlanText(ExamplePlan(), ExampleRig()),
-      "[[Predicted standard errors]] (Cramér-Rao: no unbiased fit has smaller ones)\n"
+      "[[Predicted standard errors]] (the Cramér-Rao bound, no unbiased fit has less)\n"
       "    inertia        0.0800000  ± 0.0000010 kg m^2     0.0013 %\n"
       "    viscous        0.003000   ± 0.000030  N m s/rad  1 %\n"
       "    release_angle  -0.42300   ± 0.00009   rad\n"
@@ -70,6 +70,66 @@ TEST(PlanText, ShowsTheBaseInSiAndRowsInPercent) {
       "    To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the\n"
       "    last column gives the error of the linear formulas without any noise. The\n"
       "    error of the rig's gravity torque G adds to those of inertia and torques.\n");
+}
+
+/// The example with a clock that is known to 0.3 %: inertia ± 0.6 %, as what is in proportion to the square of a time.
+Plan PlanWithTotals() {
+  Plan plan = ExamplePlan();
+  plan.fit.emplace();
+  plan.fit->termination = Termination::kConverged;
+  plan.fit->model = {"viscous", "viscous", Gravity::kSine};
+  BudgetLine clock{ErrorSource::kClock, EvaluationType::kB, "clock", "assumed", true, 0.003, "1", {}};
+  clock.parts = Eigen::VectorXd::Zero(5);
+  clock.parts[0] = 4.8e-4;
+  plan.fit->budget = {clock};
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    ParameterEstimate& parameter = plan.fit->parameters.emplace_back();
+    parameter.info = plan.parameters[i];
+    parameter.estimate = (i < 2 ? 2 : 1) * plan.truth[i];
+    parameter.std_error = (i < 2 ? 2 : 1) * *plan.rows[1].std_errors[i];
+  }
+  plan.fit->parameters[0].systematic.Add(ErrorSource::kClock, 4.8e-4);
+  for (PlanRow& row : plan.rows) {
+    row.total_errors = row.std_errors;
+    row.total_errors[0] = 2.4e-4;
+  }
+  plan.sensor.Of(SensorEffect::kClock) = {0.003, "a ceramic resonator", true};
+  return plan;
+}
+
+TEST(PlanText, SaysWhereErrorsComeFromAndWhatMakesThemSmaller) {
+  EXPECT_EQ(PlanText(PlanWithTotals(), ExampleRig(), TextExtent::kSummary),
+            "[[Predicted errors]] (noise: the Cramér-Rao bound, no unbiased fit has less)\n"
+            "                   value     ± total    unit       total  noise     error from\n"
+            "    inertia        0.0800    ± 0.0005   kg m^2     0.6 %  0.0013 %  clock\n"
+            "    viscous        0.003000  ± 0.000030 N m s/rad  1 %    1 %       noise\n"
+            "    release_angle  -0.42300  ± 0.00009  rad               9e-05     noise\n"
+            "    release_time   1.90000   ± 0.00005  s                 5.2e-05   noise\n"
+            "    zero_angle     (0.0      ± 3.0)e-05 rad               3e-05     noise\n"
+            "    Largest error: clock; compare the recorder's clock with a watch (--sensor):\n"
+            "    inertia ±\u00a00.6\u00a0%, at best ±\u00a00.0013\u00a0%. The recording that helps most: duration\n"
+            "    40 s: viscous ±\u00a00.13\u00a0% instead of ±\u00a01\u00a0%. Assumed: a ceramic resonator\n"
+            "    (--sensor).\n"
+            "    The linear formulas (inertia from damped period and logarithmic decrement,\n"
+            "    sin θ = θ; all whole periods, turning points without error) have an error\n"
+            "    above the standard error of inertia beyond an amplitude of 0.0113 rad (0.65\n"
+            "    deg): there, fit the full equation.\n"
+            "    More: --details (what another amplitude, duration, rate or resolution would\n"
+            "    give).\n");
+}
+
+TEST(PlanText, HasATableOfTotalErrorsInItsDetails) {
+  const std::string text = PlanText(PlanWithTotals(), ExampleRig());
+  EXPECT_THAT(text, HasSubstr("\n[[One setting changed at a time: total errors]]"));
+  EXPECT_THAT(text, HasSubstr("\n[[One setting changed at a time: noise alone]]"));
+  EXPECT_THAT(text, ContainsRegex("\n    duration +40 s +0.6 +0.13 "));
+  EXPECT_THAT(text, Not(HasSubstr("rig's gravity torque")));
+}
+
+TEST(PlanText, SaysWhyThereAreNoTotalErrors) {
+  Plan plan = ExamplePlan();
+  plan.without_totals = "the fit did not converge";
+  EXPECT_THAT(PlanText(plan, {}), HasSubstr("Without sensor, clock and rig: the fit did not converge.\n"));
 }
 
 TEST(PlanText, UsesUnitsOfGravityTorqueWithoutARig) {

@@ -157,11 +157,11 @@ TEST(ReadSensorFile, ReplacesTheNameByTheText) {
   const SensorFile file(R"({"kind": "gyro"})");
   RunFlags flags;
   flags.sensor = file.path();
-  EXPECT_EQ(ReadSensorFile(flags).value(), file.path());
+  EXPECT_EQ(ReadSensorFile(flags.sensor).value(), file.path());
   EXPECT_EQ(flags.sensor, R"({"kind": "gyro"})");
   for (const std::string text : {"", "gyro", R"({"gain": -1})"}) {
     flags.sensor = text;
-    EXPECT_EQ(ReadSensorFile(flags).value(), "");
+    EXPECT_EQ(ReadSensorFile(flags.sensor).value(), "");
     EXPECT_EQ(flags.sensor, text);
   }
 }
@@ -170,12 +170,12 @@ TEST(ReadSensorFile, NamesTheFileInErrors) {
   const SensorFile file(R"({"gian": 0.01})");
   RunFlags flags;
   flags.sensor = file.path();
-  const auto wrong = ReadSensorFile(flags);
+  const auto wrong = ReadSensorFile(flags.sensor);
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().code, StatusCode::kDataLoss);
   EXPECT_THAT(wrong.error().message(), HasSubstr(file.path() + ": \"gian\" is not a key of a sensor"));
   flags.sensor = "gyroscope";
-  const auto missing = ReadSensorFile(flags);
+  const auto missing = ReadSensorFile(flags.sensor);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, StatusCode::kNotFound);
   EXPECT_THAT(missing.error().message(),

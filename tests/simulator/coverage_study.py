@@ -35,6 +35,8 @@ from scenarios import ANGLE, DEG  # noqa: E402
 
 FIRST_SEED = 200_000
 COVERAGE = (0.93, 0.97)
+# What a bent curve shows at angle 0 is its own zero, but the budget of the zero counts all of the bend.
+MAY_COVER_MORE = {"zero_angle"}
 LEAST_Z = 0.4
 ORDERS = 7  # of Legendre's polynomials, the bent curve of a sensor: 0 and 2 to 6
 WARMING = 5  # time constants of a warm-up in a recording
@@ -105,8 +107,9 @@ def faults(found: dict) -> list[str]:
     """Why a cell does not pass; empty if it does. The limits allow for two standard deviations of a finite count."""
     low, high = COVERAGE
     spread = 2 * math.sqrt(0.05 * 0.95 / found["recordings"])
+    highest = {name: 1 if name in MAY_COVER_MORE else high + spread for name in found["z"]}
     faulty = [f"{name} covered {each['coverage']:.3f}, rms z {each['rms']:.2f}" for name, each in found["z"].items()
-              if not low - spread <= each["coverage"] <= high + spread or each["rms"] < LEAST_Z]
+              if not low - spread <= each["coverage"] <= highest[name] or each["rms"] < LEAST_Z]
     if found["judged"] < LEAST_JUDGED * found["expected"]:
         faulty.append(f"{found['expected'] - found['judged']} of {found['expected']} without an error")
     return faulty

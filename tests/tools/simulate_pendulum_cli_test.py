@@ -202,19 +202,32 @@ class SimulatePendulumTest(unittest.TestCase):
     def test_plan_predicts_on_stdout_and_makes_no_file(self):
         self.write_rig('{"gravity_torque": 2}')
         with_rig = self.check_made(*NOISY, "--plan", "--details", "--rig", "rig.json")
-        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.0000\d+ kg m\^2 +0\.\d+ %\n")
+        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.000\d+ +kg m\^2 +1 % +0\.\d+ % +gravity torque\n")
         self.assertRegex(with_rig, r"\n    duration +80 s +\d")
         without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan", "--details")
-        self.assertRegex(without, r"\n    inertia +0\.0200\d* +± 0\.0000\d+ s\^2 +0\.\d+ %\n")
+        self.assertRegex(without, r"\n    inertia +0\.0200\d* +± 0\.000\d+ +s\^2 +0\.\d+ % +0\.\d+ % +\w")
         rows = [[line for line in text.splitlines() if line.startswith("    resolution")] for text in (with_rig, without)]
-        self.assertEqual(len(rows[0]), 3)
-        self.assertEqual([row.split()[:7] for row in rows[0]], [row.split()[:7] for row in rows[1]])  # % of inertia
+        self.assertEqual(len(rows[0]), 6)
+        of_noise = [[row.split()[:7] for row in of_text[3:]] for of_text in rows]
+        self.assertEqual(of_noise[0], of_noise[1])  # % of inertia
         self.assertEqual([path.name for path in self.folder.iterdir()], ["rig.json"])
+
+    def test_plan_has_the_errors_of_the_sensor_that_is_stated(self):
+        sensor = '{"kind": "ideal", "clock": 0.003}'
+        (self.folder / "sensor.json").write_text(sensor, encoding="utf-8")
+        for stated in (sensor, "sensor.json"):
+            text = self.check_made(*NOISY, "--plan", "--sensor", stated)
+            self.assertRegex(text, r"\n    inertia .* 0\.6 % +0\.\d+ % +clock\n")
+            self.assertIn("Largest error: clock; compare the recorder's clock with a watch", text)
+            self.assertNotIn("Assumed", text)
+        self.assertIn("Assumed: an angle sensor, a quartz crystal", self.check_made(*NOISY, "--plan").replace("\n    ", " "))
 
     def test_plan_refuses_outputs_and_what_it_cannot_predict(self):
         self.check_refused(2, "--out contradicts --plan", *NOISY, "--plan", "--out", "run.csv")
         self.check_refused(2, "--count contradicts --plan", *NOISY, "--plan", "--count", "2")
         self.check_refused(2, "--plan needs --noise or --resolution", "--set", MOTION, "--plan")
+        self.check_refused(2, "--sensor belongs to a plan", *NOISY, "--out", "run.csv", "--sensor", "ideal")
+        self.check_refused(3, "--sensor takes a file or a kind", *NOISY, "--plan", "--sensor", "ideel")
         self.check_refused(5, "never moves", "--plan", "--noise", "1", "--set", f"inertia=0.04,coulomb=0.5,{START}")
 
     def test_missing_rig_exits_3_and_a_bad_one_4(self):

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "pendulum/base/status.h"
+#include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/model/parameter.h"
+#include "pendulum/recording/sensor_errors.h"
 #include "pendulum/trajectory/synthetic.h"
 
 namespace pendulum {
@@ -25,6 +27,9 @@ struct PlanRow {
   std::vector<std::optional<double>> std_errors;  ///< P, the smallest possible ones (CramerRaoBounds).
   std::optional<double> linear_bias;              ///< LinearInertiaBias; absent with less than one whole period.
   std::string reason;                             ///< Why there is no such recording; empty if there is one.
+  SyntheticOptions run = {};                      ///< The recording.
+  /// P, with rig, sensor and clock (AddTotalErrors); empty without them.
+  std::vector<std::optional<double>> total_errors = {};
 };
 
 /// Predicted accuracy of recordings of a rig; one factor varies at a time.
@@ -39,6 +44,10 @@ struct Plan {
   /// of friction and finite amplitude cancel. At smaller ones the bias is smaller than the error, or there is no whole
   /// period. May be absent.
   std::optional<double> amplitude_of_equal_bias;
+  /// What fit_pendulum would report of the base case, with the true values and the errors above (AddTotalErrors).
+  std::optional<FitReport> fit;
+  SensorErrors sensor;         ///< Of that fit.
+  std::string without_totals;  ///< Why there is no such fit; empty before AddTotalErrors and if there is one.
 };
 
 /// Relative error I_linear / I - 1 of the textbook's linear formulas on exact turning points (t_k, A_k), over all n

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/model/rig.h"
 #include "pendulum/report/section.h"
 
 namespace pendulum {
@@ -14,6 +16,10 @@ namespace pendulum {
 /// The lines of the error budget of a converged fit: noise, then FitReport::budget, then changes and friction of
 /// another law. The parts are in the order of the parameters, 0 for those without an error.
 std::vector<BudgetLine> BudgetOf(const FitReport& fit);
+
+/// Where most of the variance of an estimate comes from, in words ("masses and length"), or the short names of the two
+/// largest sources ("sensor, noise").
+std::string MainSourcesText(double std_error, const SystematicErrors& systematic, const std::optional<Rig>& rig);
 
 /// The error budget as a table, a line each: its size, its type in the sense of the GUM (A: from statistics, B: stated
 /// or assumed), where the size comes from, and what it adds to each parameter that has an error. Empty if noise is the

@@ -89,9 +89,12 @@ const std::vector<RunFlag>& RunFlagTable();
 /// The error for a flag that cannot be combined with --closed_form_only.
 tl::unexpected<Status> NeedsFitError(std::string_view flag);
 
-/// Replaces the name of a file in `sensor` by the file's text, and returns the name; empty if `sensor` is a kind, JSON
-/// or not given. kNotFound: no such file, nor such a kind. kDataLoss: as ReadFile and ParseSensorStatement.
-Result<std::string> ReadSensorFile(RunFlags& flags);
+/// Replaces the name of a file in the flag --sensor by the file's text, and returns the name; empty if the flag is a
+/// kind, JSON or not given. kNotFound: no such file, nor such a kind. kDataLoss: as ReadFile and ParseSensorStatement.
+Result<std::string> ReadSensorFile(std::string& sensor);
+
+/// What the flag --sensor states, a kind or JSON; absent if it is not given. kInvalidArgument: as ParseSensorStatement.
+Result<std::optional<SensorStatement>> StatedSensor(const std::string& sensor);
 
 /// Converts flags to options; the caller reads rig and calibration. kInvalidArgument: a flag is wrong or contradicts
 /// another; the message names it.
