@@ -75,36 +75,37 @@ std::optional<double> InClosedForm(const ParameterEstimate& parameter, const Clo
   return row == check->rows.end() ? parameter.closed_form : row->closed_form;
 }
 
-/// A parameter in one unit: name, value, error or note, unit, interval.
+bool HasSystematic(const FitReport& fit) {
+  return std::ranges::any_of(fit.parameters,
+                             [](const ParameterEstimate& parameter) { return parameter.systematic.Total() > 0; });
+}
+
+/// The head of a column of total errors.
+std::string ErrorHead(bool has_systematic) { return has_systematic ? "± total error" : "± std error"; }
+
+/// A parameter in one unit: name, value, total error or note, unit, total interval.
 Row ParameterRow(const ParameterEstimate& parameter, const Conversion& conversion, bool is_first) {
-  const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
+  const auto total = TotalStdError(parameter.std_error, parameter.systematic);
+  const QuantityNumbers numbers(parameter.estimate, total, conversion.factor);
   const std::string note = is_first ? Note(parameter) : "";
   const std::string error = numbers.Error();
+  const auto [lower, upper] = TotalInterval95(parameter);
   return {is_first ? std::string(parameter.info.name) : "", numbers.Value(),
           error + (error.empty() || note.empty() ? "" : " ") + note, std::string(conversion.unit),
-          numbers.Interval(parameter.lower95, parameter.upper95)};
+          numbers.Interval(lower, upper)};
 }
 
-/// Further data of a parameter: name, symbol, systematic error, closed form, unit.
-Row FurtherRow(const ParameterEstimate& parameter, const std::optional<double>& closed_form,
-               const Conversion& conversion, bool is_first) {
-  const QuantityNumbers numbers(parameter.estimate, parameter.std_error, conversion.factor);
-  const std::string systematic = numbers.SecondError(parameter.systematic.Total());
-  const std::string number = closed_form ? numbers.Number(*closed_form) : "";
-  const bool says_something = !systematic.empty() || !number.empty();
-  return {is_first ? std::string(parameter.info.name) : "", is_first ? std::string(parameter.info.symbol) : "",
-          systematic, number, says_something ? std::string(conversion.unit) : ""};
-}
-
+/// Errors and intervals of noise alone, where there are others, and closed forms, in the first unit of each parameter.
 Table FurtherTable(const FitReport& fit, const ClosedFormCheck* check) {
-  Table table{{{"name"}, {"symbol"}, {"± systematic"}, {"closed form", true}, {"unit"}}};
+  Table table{{{"name"}, {"symbol"}, {"± by noise"}, {"interval by noise"}, {"closed form", true}}};
   for (const ParameterEstimate& parameter : fit.parameters) {
+    const QuantityNumbers numbers(parameter.estimate, parameter.std_error);
+    const bool has_other = parameter.systematic.Total() > 0;
     const std::optional<double> closed_form = InClosedForm(parameter, check);
-    table.rows.push_back(FurtherRow(parameter, closed_form, {parameter.unit}, true));
-    const auto degrees = Degrees(parameter.unit);
-    if (!degrees) continue;
-    Row row = FurtherRow(parameter, closed_form, *degrees, false);
-    if (!row.back().empty()) table.rows.push_back(std::move(row));
+    table.rows.push_back({std::string(parameter.info.name), std::string(parameter.info.symbol),
+                          has_other ? numbers.SecondError(parameter.std_error) : "",
+                          has_other ? numbers.Interval(parameter.lower95, parameter.upper95) : "",
+                          closed_form ? numbers.Number(*closed_form) : ""});
   }
   return table;
 }
@@ -163,7 +164,7 @@ std::string InertiaText(const FitReport& fit, const std::optional<Rig>& rig) {
 }
 
 Table EstimateTable(const FitReport& fit) {
-  Table table{{{"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
+  Table table{{{"name"}, {"value", true}, {ErrorHead(HasSystematic(fit)), false, 1}, {"unit"}, {"95 % interval"}}};
   for (const ParameterEstimate& parameter : fit.parameters) {
     table.rows.push_back(ParameterRow(parameter, {parameter.unit}, true));
     if (const auto degrees = Degrees(parameter.unit)) table.rows.push_back(ParameterRow(parameter, *degrees, false));
@@ -175,20 +176,26 @@ constexpr const char* kNoEstimates = "These values are not estimates, because no
 
 // --- derived quantities ----------------------------------------------------------------------------------------------
 
-/// An error larger than the value carries no information: it belongs to a quotient whose divisor may be 0.
-bool IsUninformative(const DerivedQuantity& quantity) {
-  return quantity.std_error.value_or(0) >= std::abs(quantity.estimate);
-}
-
-std::string DerivedInterval(const DerivedQuantity& quantity) {
-  if (!quantity.lower95 && !quantity.upper95) return "";
+/// A derived quantity with its total error and interval, and the error by noise alone if there are others. An error
+/// larger than the value carries no information: it belongs to a quotient whose divisor may be 0.
+Row DerivedRow(const DerivedQuantity& quantity) {
+  const std::optional<double> total = TotalStdError(quantity.std_error, quantity.systematic);
+  const bool nothing = total.value_or(0) >= std::abs(quantity.estimate);
+  const auto [lower, upper] = TotalInterval95(quantity);
   const auto number = [&](const std::optional<double>& end) -> std::string {
     if (!end) return "?";
-    const double error = quantity.std_error.value_or(0);
-    if (!(error > 0) || IsUninformative(quantity)) return NumberText(*end, kDigitsWithoutError);
-    return RoundedText(*end, PdgRounding(quantity.estimate, error));
+    if (!(total > 0) || nothing) return NumberText(*end, kDigitsWithoutError);
+    return RoundedText(*end, PdgRounding(quantity.estimate, *total));
   };
-  return "[" + number(quantity.lower95) + ", " + number(quantity.upper95) + "]";
+  ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
+  if (total > 0 && !nothing) text = PdgText(quantity.estimate, *total);
+  const bool has_other = quantity.std_error && quantity.systematic.Total() > 0;
+  return {quantity.name,
+          text.value,
+          text.error.empty() ? "" : "± " + text.error,
+          quantity.unit,
+          lower || upper ? "[" + number(lower) + ", " + number(upper) + "]" : "",
+          has_other ? "± " + NumberText(*quantity.std_error, 2) + " by noise" : ""};
 }
 
 /// σ in other units: "(0.0512 deg, 0.26 resolutions)".
@@ -213,24 +220,15 @@ Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, con
   ExplainMissingErrors(fit, section);
   if (!fit.std_error_method.empty()) section.AddText("Standard errors: " + fit.std_error_method + ".");
   if (!fit.interval_method.empty()) section.AddText("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
-  const auto is_systematic = [](const ParameterEstimate& parameter) { return parameter.systematic.Total() > 0; };
-  if (std::ranges::any_of(fit.parameters, is_systematic))
-    section.AddText("Standard errors and intervals above are of noise alone.");
+  if (HasSystematic(fit))
+    section.AddText("These are of noise alone; total errors have the rest of the error budget, too.");
   DescribeIdentifiability(fit, section);
   return section.AddText(check != nullptr ? "" : InertiaText(fit, rig));
 }
 
 Section DerivedSection(const FitReport& fit) {
   Table table{{{""}, {"", true}, {"", false, 1}, {""}, {""}, {""}}};
-  for (const DerivedQuantity& quantity : fit.derived) {
-    const bool nothing = IsUninformative(quantity);
-    ValueAndError text{NumberText(quantity.estimate, nothing ? kDigitsWithoutError : kTextDigits), ""};
-    if (quantity.std_error.value_or(0) > 0 && !nothing) text = PdgText(quantity.estimate, *quantity.std_error);
-    const std::optional<double> systematic = quantity.systematic.Total();
-    table.rows.push_back({quantity.name, text.value, text.error.empty() ? "" : "± " + text.error, quantity.unit,
-                          DerivedInterval(quantity),
-                          systematic ? "± " + NumberText(*systematic, 2) + " systematic" : ""});
-  }
+  for (const DerivedQuantity& quantity : fit.derived) table.rows.push_back(DerivedRow(quantity));
   return {"Derived quantities", "", {std::move(table)}};
 }
 
@@ -318,7 +316,8 @@ Section SumSection(const FitStatistics& all) {
 
 /// What each of several recordings does not share.
 Section OwnSection(const Identification& identification, std::size_t index) {
-  Table table{{{""}, {"name"}, {"value", true}, {"± std error", false, 1}, {"unit"}, {"95 % interval"}}};
+  const bool has_systematic = HasSystematic(identification.fits[index]);
+  Table table{{{""}, {"name"}, {"value", true}, {ErrorHead(has_systematic), false, 1}, {"unit"}, {"95 % interval"}}};
   const std::vector<std::string>& shared = identification.across[index].shared;
   for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
     std::string number = std::to_string(k + 1);

@@ -51,16 +51,16 @@ constexpr const char* kWholeFit = R"([[Data]]
             standard errors
     solver  7 iterations, 15 trajectories, accurate to 2e-10 rad
 [[Parameters]]
-    name              value ± std error  unit       95 % interval
-    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]
-    viscous          0.0030 ± 0.0005     N m s/rad  [0.0020, 0.0040]
-    coulomb               0 (at bound)   N m        [0, 0.000125]
-    release_angle   0.42300 ± 0.00020    rad        [0.42260, 0.42340]
-                     24.236 ± 0.011      deg        [24.213, 24.259]
-    zero_angle         0.01 (fixed)      rad
-                   0.572958              deg
-    name           symbol  ± systematic  unit
-    inertia        I_O     ± 0.0010      kg m^2
+    name              value ± total error  unit       95 % interval
+    inertia          0.0790 ± 0.0010       kg m^2     [0.0770, 0.0810]
+    viscous          0.0030 ± 0.0005       N m s/rad  [0.0020, 0.0040]
+    coulomb               0 (at bound)     N m        [0, 0.000125]
+    release_angle   0.42300 ± 0.00020      rad        [0.42260, 0.42340]
+                     24.236 ± 0.011        deg        [24.213, 24.259]
+    zero_angle         0.01 (fixed)        rad
+                   0.572958                deg
+    name           symbol  ± by noise  interval by noise
+    inertia        I_O     ± 0.00025   [0.07850, 0.07950]
     viscous        b
     coulomb        τ_c
     release_angle  θ_r
@@ -68,7 +68,8 @@ constexpr const char* kWholeFit = R"([[Data]]
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
-    Standard errors and intervals above are of noise alone.
+    These are of noise alone; total errors have the rest of the error budget,
+    too.
     viscous is weakly identifiable (its effect can be compensated by coulomb):
     let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.
@@ -234,10 +235,10 @@ TEST(ToText, KeepsColumnsAlignedAroundPowersOfTen) {
   viscous = ExampleParameter(kViscous, "N m s/rad", 3e-6, 1.2e-7);
   viscous.systematic.Add(ErrorSource::kRig, 4e-8);
   const std::string text = AllSections(report);
-  EXPECT_THAT(text, HasSubstr("    inertia         0.07900 ± 0.00025    kg m^2     [0.07850, 0.07950]\n"
-                              "    viscous           (3.00 ± 0.12)e-06  N m s/rad  [2.76e-06, 3.24e-06]\n"));
-  EXPECT_THAT(text, HasSubstr("    inertia        I_O     ± 0.0010      kg m^2\n"
-                              "    viscous        b       ± 0.04e-06    N m s/rad\n"));
+  EXPECT_THAT(text, HasSubstr("    inertia          0.0790 ± 0.0010       kg m^2     [0.0770, 0.0810]\n"
+                              "    viscous           (3.00 ± 0.13)e-06    N m s/rad  [2.75e-06, 3.25e-06]\n"));
+  EXPECT_THAT(text, HasSubstr("    inertia        I_O     ± 0.00025   [0.07850, 0.07950]\n"
+                              "    viscous        b       ± 0.12e-06  [2.76e-06, 3.24e-06]\n"));
 }
 
 // 0.079 / 0.076 = 1.039, 0.079 / 0.088 = 0.898.
@@ -439,15 +440,15 @@ TEST(ReportSections, CountTheRecordingsThatShareParameters) {
 
 TEST(ReportSections, ShowSeparateParametersOfEachRecording) {
   EXPECT_EQ(TextOf(ExampleJointIdentification(), "Each recording's own"), R"([[Each recording's own]] (by the joint fit)
-       name              value ± std error  unit  95 % interval
-    1  release_angle   0.42300 ± 0.00020    rad   [0.42260, 0.42340]
-                        24.236 ± 0.011      deg   [24.213, 24.259]
-       zero_angle         0.01 (fixed)      rad
-                      0.572958              deg
-    2  initial_angle     0.250 ± 0.013      rad   [0.225, 0.275]
-                          14.3 ± 0.7        deg   [12.9, 15.8]
-       zero_angle         0.01 (fixed)      rad
-                      0.572958              deg
+       name              value ± total error  unit  95 % interval
+    1  release_angle   0.42300 ± 0.00020      rad   [0.42260, 0.42340]
+                        24.236 ± 0.011        deg   [24.213, 24.259]
+       zero_angle         0.01 (fixed)        rad
+                      0.572958                deg
+    2  initial_angle     0.250 ± 0.013        rad   [0.225, 0.275]
+                          14.3 ± 0.7          deg   [12.9, 15.8]
+       zero_angle         0.01 (fixed)        rad
+                      0.572958                deg
 )");
 }
 
