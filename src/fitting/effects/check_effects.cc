@@ -321,7 +321,7 @@ bool MayTest(const NoiseModel& noise, double resolution) {
 
 /// The correction by the named and the former causes together.
 Correction CorrectionOf(const EffectTests& tests, const Correction& known, const std::vector<Suspicion>& suspicions) {
-  Correction correction{known.causes, tests.applied(), {}};
+  Correction correction{known.causes, tests.applied(), {}, 0};
   for (const Suspicion& suspicion : suspicions) {
     const bool is_new = IsCorrectable(suspicion.cause) && !suspicion.is_corrected;
     if (is_new && tests.IsPlausible(suspicion.cause)) correction.causes.push_back(suspicion.cause);
@@ -330,7 +330,9 @@ Correction CorrectionOf(const EffectTests& tests, const Correction& known, const
   if (columns.empty()) return correction;
   const VectorXd change = tests.Estimate(columns).mean;
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    correction.sizes[columns[k] - tests.parameters()] += change[static_cast<Index>(k)];
+    double& size = correction.sizes[columns[k] - tests.parameters()];
+    size += change[static_cast<Index>(k)];
+    if (tests.EffectOf(columns[k]).cause == Cause::kBacklash) correction.play = std::abs(size);
   }
   return correction;
 }
@@ -350,10 +352,10 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
   VectorXd readings;
   MatrixXd jacobian;
   const Bins bins = MakeBins(problem);
-  const auto effects_at = [&](const std::vector<Index>& samples) {
-    return EffectColumnsAt(recording.sensor_errors, problem, cost, solution, samples);
+  const auto effects_at = [&](const std::vector<Index>& samples, double play) {
+    return EffectColumnsAt(recording.sensor_errors, problem, cost, solution, samples, play);
   };
-  const EffectColumns effects = effects_at(bins.middle);
+  const EffectColumns effects = effects_at(bins.middle, known.play);
   if (effects.effects.empty() || !optimum.inverse.identifiable || optimum.free.empty()) return check;
   if (!cost.Readings(solution.parameters, &readings, &jacobian)) return check;
   jacobian = MatrixXd(jacobian(bins.middle, Eigen::all));
@@ -374,7 +376,7 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
     }
     if (MayCorrect(problem, solution.noise)) check.correction = CorrectionOf(tests, known, check.suspicions);
     if (!check.correction.causes.empty()) {
-      const EffectColumns of_all = effects_at(AllSamples(problem));
+      const EffectColumns of_all = effects_at(AllSamples(problem), check.correction.play);
       // Samples may show a motion that bins do not show; then they have other effects.
       if (of_all.columns.cols() == check.correction.sizes.size()) {
         check.correction.readings = of_all.columns * check.correction.sizes;

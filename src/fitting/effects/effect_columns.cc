@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/effects/effect_columns.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -21,7 +22,6 @@ struct FittedSwing {
   VectorXd time;            // N, s from the first sample
   VectorXd reading, slope;  // N, the motion as the sensor shows it, without its zero, and its derivative
   VectorXd by_motion;       // N, derivative of the reading with respect to the angle, or to the rate if it shows that
-  VectorXd direction;       // N, of the motion: 1, -1, or 0 at rest
   double release = 0;       // s; 0 for a start in motion
   double stop = 0;          // s
   bool is_held = false;     // the recording begins with a hold
@@ -51,7 +51,6 @@ FittedSwing MakeSwing(const FitProblem& problem, const Solution& solution, const
   swing.reading = states.value[ShowsRate(problem) ? 1 : 0];
   swing.slope = states.value[ShowsRate(problem) ? 2 : 1];
   swing.by_motion = VectorXd::Ones(swing.time.size());
-  swing.direction = states.value[1].unaryExpr([](double rate) { return rate > 0 ? 1.0 : rate < 0 ? -1.0 : 0.0; });
   swing.stop = stop;
   if (problem.data.sensor.kind != SensorKind::kDirect) SetShown(problem, solution, states, swing);
   return swing;
@@ -119,13 +118,35 @@ void AddDrift(const SensorErrors& sensor, const FittedSwing& swing, ColumnWriter
   writer.AddPlausible(Cause::kDrift, size, 1 - (-kWarming * share.array()).exp());
 }
 
-void AddSensorEffects(const SensorErrors& sensor, const FitProblem& problem, const FittedSwing& swing,
+/// What a play of this width changes in the readings, over the width: the sensor stays until the pendulum has crossed
+/// the gap (the play operator of M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with Hysteresis, 1989). A hold is
+/// taken to be in the middle of the gap, a motion at its end. The turning point between two samples is that of a
+/// parabola.
+VectorXd PlayColumn(const FittedSwing& swing, double width) {
+  const double half = width / 2;
+  const VectorXd &reading = swing.reading, &slope = swing.slope;
+  double shown = reading[0] - (slope[0] > 0 ? half : slope[0] < 0 ? -half : 0);
+  const auto follow = [&](double to) { shown = std::clamp(shown, to - half, to + half); };
+  VectorXd column(reading.size());
+  for (Index i = 0; i < reading.size(); ++i) {
+    if (i > 0 && slope[i - 1] * slope[i] < 0) {
+      const double share = slope[i - 1] / (slope[i - 1] - slope[i]);  // of the interval, before the turning point
+      follow(reading[i - 1] + 0.5 * slope[i - 1] * share * (swing.time[i] - swing.time[i - 1]));
+    }
+    follow(reading[i]);
+    column[i] = (shown - reading[i]) / width;
+  }
+  return column;
+}
+
+void AddSensorEffects(const SensorErrors& sensor, const FitProblem& problem, const FittedSwing& swing, double play,
                       ColumnWriter& writer) {
   writer.AddPlausible(Cause::kGain, sensor.Of(SensorEffect::kGain).std_dev, swing.reading);
   AddNonlinearity(sensor, problem.data.sensor.kind == SensorKind::kArc, swing, writer);
   writer.AddPlausible(Cause::kLag, sensor.Of(SensorEffect::kLag).std_dev, -swing.slope);
   if (!ShowsRate(problem) && problem.zero_motion != ZeroMotion::kLags) {
-    writer.AddPlausible(Cause::kBacklash, sensor.Of(SensorEffect::kBacklash).std_dev, -0.5 * swing.direction);
+    const double size = sensor.Of(SensorEffect::kBacklash).std_dev;
+    if (size > 0) writer.Add({Cause::kBacklash, size}, PlayColumn(swing, play > 0 ? play : size));
   }
   if (problem.zero_motion != ZeroMotion::kDrifts) AddDrift(sensor, swing, writer);
 }
@@ -209,7 +230,7 @@ void AddDisturbances(const FitProblem& problem, const FittedSwing& swing, const 
 }  // namespace
 
 EffectColumns EffectColumnsAt(const SensorErrors& sensor, const FitProblem& problem, const TrajectoryCost& cost,
-                              const Solution& solution, const std::vector<Index>& at) {
+                              const Solution& solution, const std::vector<Index>& at, double play) {
   EffectColumns effects;
   MotionStates states;
   if (problem.data.sensor.kind == SensorKind::kScaledRate) return effects;  // its gain is fitted
@@ -225,7 +246,7 @@ EffectColumns EffectColumnsAt(const SensorErrors& sensor, const FitProblem& prob
     writer.AddPlausible(Cause::kGain, sensor.Of(SensorEffect::kGain).std_dev, swing.reading);
     return effects;
   }
-  AddSensorEffects(sensor, problem, swing, writer);
+  AddSensorEffects(sensor, problem, swing, play, writer);
   AddHold(problem, swing, writer);
   const auto physical = std::span(solution.parameters).first(static_cast<std::size_t>(problem.solve.last_friction) + 1);
   AddDisturbances(problem, swing, states, physical, writer);

@@ -56,6 +56,33 @@ TEST(EffectColumns, OfGainAndLagAreTheSwingAndMinusItsRate) {
   }
 }
 
+// The reading stays until the pendulum has crossed the gap, then follows at half the gap's width behind.
+TEST(EffectColumns, OfAPlayFollowAtTheEndsOfTheGap) {
+  constexpr double kWidth = 0.02;  // rad
+  const Fitted fitted = ReleasedFit();
+  const VectorXd column = FirstOf(ColumnsAt(fitted, Errors(kWidth)), Cause::kBacklash);
+  const VectorXd swing = fitted.solution.readings.array() - fitted.solution.parameters.back();
+  const VectorXd shown = swing + kWidth * column;
+  Index turns = 0, jumps = 0, stays = 0;
+  for (Index i = 1; i + 1 < swing.size(); ++i) {
+    EXPECT_LE(std::abs(column[i]), 0.5 + 1e-9);
+    const bool is_released = fitted.recording.time[i] > 2;
+    if (!is_released) continue;
+    if ((swing[i] - swing[i - 1]) * (swing[i + 1] - swing[i]) < 0) ++turns;
+    const double moved = std::abs(shown[i] - shown[i - 1]);
+    if (moved < 1e-12) ++stays;
+    if (moved > 1e-12 && std::abs(column[i]) < 0.5 - 1e-9) ++jumps;  // from before a turning point to after it
+  }
+  EXPECT_LE(jumps, turns);
+  EXPECT_GE(stays, turns);
+}
+
+TEST(EffectColumns, OfAPlayAreZeroInAHold) {
+  const Fitted fitted = ReleasedFit();
+  const VectorXd column = FirstOf(ColumnsAt(fitted, Errors(0.02)), Cause::kBacklash);
+  for (Index i = 0; fitted.recording.time[i] < 1.8; ++i) EXPECT_EQ(column[i], 0) << i;
+}
+
 TEST(EffectColumns, OfAnIdealSensorAreThoseOfHandAndFrictionAlone) {
   const EffectColumns columns = ColumnsAt(ReleasedFit(), Errors(0));
   for (const Effect& effect : columns.effects) EXPECT_FALSE(IsOfSensor(effect.cause)) << CauseName(effect.cause);

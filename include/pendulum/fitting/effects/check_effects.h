@@ -23,6 +23,7 @@ struct Correction {
   std::vector<Cause> causes;
   Eigen::VectorXd sizes;     ///< E, of all effects in the order of EffectColumnsAt; 0 for those of other causes.
   Eigen::VectorXd readings;  ///< N, what these effects add to the readings; empty if there is none.
+  double play = 0;           ///< Width of the play among them, in the unit of the readings; 0: none.
 };
 
 /// What effects outside the fitted law do to a fit.
