@@ -78,6 +78,11 @@ std::string SourceWords(ErrorSource source, const std::optional<Rig>& rig) {
   return "";
 }
 
+/// "an encoder".
+std::string WithArticle(const std::string& noun) {
+  return (std::string_view("aeio").find(noun.front()) < 4 ? "an " : "a ") + noun;
+}
+
 // ---- How to make an error smaller -----------------------------------------------------------------------------------
 
 struct Remedy {
@@ -99,7 +104,7 @@ constexpr std::array kRemedies = {Remedy{"clock", "compare the recorder's clock 
                                   Remedy{"stiffness", "measure the stiffness with known torques"}};
 
 /// How to make a line smaller; empty if nothing is known.
-std::string_view RemedyFor(const BudgetLine& line) {
+std::string_view RemedyOf(const BudgetLine& line) {
   const auto* const cause = std::ranges::find(kCauses, line.name, CauseName);
   if (cause != kCauses.end() && IsOfSensor(*cause)) return RemedyFor(*cause);
   const auto* const remedy = std::ranges::find(kRemedies, line.name, &Remedy::name);
@@ -143,9 +148,11 @@ std::vector<BudgetLine> BudgetOf(const FitReport& fit) {
   if (fit.termination != Termination::kConverged) return lines;
   lines.push_back(LineOf(fit, std::nullopt, "the scatter of the readings",
                          [](const ParameterEstimate& parameter) { return parameter.std_error.value_or(0); }));
+  constexpr double kRounding = 1e-9;  // of the error of noise: a lag is taken up by the release time
   for (BudgetLine line : fit.budget) {
     for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-      if (!fit.parameters[i].std_error) line.parts[static_cast<Eigen::Index>(i)] = 0;
+      double& part = line.parts[static_cast<Eigen::Index>(i)];
+      if (!(part > kRounding * fit.parameters[i].std_error.value_or(HUGE_VAL))) part = 0;
     }
     lines.push_back(std::move(line));
   }
@@ -218,17 +225,28 @@ std::string LargestErrorText(const FitReport& fit) {
     const ParameterEstimate& parameter = fit.parameters[i];
     const auto part_of = [&](const BudgetLine& line) { return line.parts[static_cast<Eigen::Index>(i)]; };
     const BudgetLine& largest = *std::ranges::max_element(lines, {}, part_of);
-    const std::string_view remedy = RemedyFor(largest);
-    if (remedy.empty() || !largest.source) continue;
+    const std::string_view remedy = RemedyOf(largest);
+    if (remedy.empty() || !largest.source || parameter.estimate == 0) continue;
     const double total = *TotalStdError(parameter.std_error, parameter.systematic);
     const double left = ErrorWithout(part_of(largest), parameter.systematic.Of(*largest.source), total);
     if (!(total > best * left)) continue;
     best = total / left;
-    text = "Largest error: " + InWords(largest.name) + "; " + std::string(remedy) + ": " +
+    text = "Improve first: " + InWords(largest.name) + "; " + std::string(remedy) + ": " +
            std::string(parameter.info.name) + " " + RelativeText(total, parameter.estimate) + ", at best " +
            RelativeText(left, parameter.estimate) + ".";
   }
   return text;
+}
+
+std::vector<std::string> SensorAssumptions(const SensorErrors& sensor) {
+  constexpr double kMatters = 1e-3;  // a quartz crystal is better
+  std::vector<std::string> assumed;
+  if (sensor.is_kind_assumed && !sensor.kind.empty()) assumed.push_back(WithArticle(sensor.kind) + " (--sensor)");
+  const EffectSize& clock = sensor.Of(SensorEffect::kClock);
+  if (clock.is_assumed && clock.std_dev >= kMatters) {
+    assumed.push_back("clock ±" + PlainSizeText(clock.std_dev, "1") + " for " + clock.source + " (--sensor)");
+  }
+  return assumed;
 }
 
 }  // namespace pendulum

@@ -221,7 +221,7 @@ Section AllOfParameters(const FitReport& fit, const std::optional<Rig>& rig, con
   if (!fit.std_error_method.empty()) section.AddText("Standard errors: " + fit.std_error_method + ".");
   if (!fit.interval_method.empty()) section.AddText("Intervals: " + fit.interval_method + "." + OpenIntervals(fit));
   if (HasSystematic(fit))
-    section.AddText("These are of noise alone; total errors have the rest of the error budget, too.");
+    section.AddText("These are of noise alone; the total errors and intervals contain the whole error budget.");
   DescribeIdentifiability(fit, section);
   return section.AddText(check != nullptr ? "" : InertiaText(fit, rig));
 }

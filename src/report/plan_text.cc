@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -72,53 +73,62 @@ std::string SourceOf(const Plan& plan, std::size_t i, const std::optional<Rig>& 
   return MainSourcesText(*fitted->std_error, fitted->systematic, rig);
 }
 
-/// The parameters of the base case, with total errors if these are known.
-std::string BaseText(const Plan& plan, const Units& units, const PlanRow& base, const std::optional<Rig>& rig) {
-  const bool has_totals = plan.fit.has_value();
-  const std::string_view percent = " %";
+/// Name, value, error and unit of a parameter.
+Cells ValueCells(const Plan& plan, const Units& units, const std::optional<double>& error, std::size_t i) {
+  const double value = units.Factor(i) * plan.truth[i];
+  Cells cells = {std::string(plan.parameters[i].name), NumberText(value, kPlanDigits), "± -", units.Name(i)};
+  if (!error) return cells;
+  const ValueAndError text = PdgText(value, units.Factor(i) * *error);
+  cells[1] = text.value;
+  cells[2] = "± " + text.error;
+  return cells;
+}
+
+/// The parameters of the base case and the bounds of their errors by noise.
+std::string NoiseText(const Plan& plan, const Units& units, const PlanRow& base) {
   std::vector<Cells> rows;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
-    const double value = units.Factor(i) * plan.truth[i];
-    Cells cells = {std::string(plan.parameters[i].name), NumberText(value, kPlanDigits), "± -", units.Name(i), ""};
-    const std::optional<double>& error = has_totals ? base.total_errors[i] : base.std_errors[i];
-    if (error) {
-      const ValueAndError text = PdgText(value, units.Factor(i) * *error);
-      cells[1] = text.value;
-      cells[2] = "± " + text.error;
-      if (units.IsPercent(i)) cells[4] = ErrorCell(plan, units, error, i).append(percent);
-    }
-    if (has_totals) {
-      const std::string noise = ErrorCell(plan, units, base.std_errors[i], i);
-      cells.push_back(units.IsPercent(i) && base.std_errors[i] ? noise + std::string(percent) : noise);
-      cells.push_back(error ? SourceOf(plan, i, rig) : "");
-    }
-    rows.push_back(cells);
+    const std::optional<double>& error = base.std_errors[i];
+    rows.push_back(ValueCells(plan, units, error, i));
+    rows.back().push_back(error && units.IsPercent(i) ? ErrorCell(plan, units, error, i) + " %" : "");
   }
-  const std::string bound =
-      plan.noise_of_levels ? "of least squares" : "the Cramér-Rao bound, no unbiased fit has less";
-  if (!has_totals) {
-    return "[[Predicted standard errors]] (" + bound + ")\n" +
-           AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kTextIndent);
+  return std::string("[[Predicted standard errors]] (") +
+         (plan.noise_of_levels ? "least squares" : "Cramér-Rao bound") + ")\n" +
+         AlignedTable({{""}, {""}, {""}, {"", false, 1}, {""}}, rows, kTextIndent);
+}
+
+/// The parameters of the base case, their total errors, and where these come from.
+std::string TotalText(const Plan& plan, const Units& units, const PlanRow& base, const std::optional<Rig>& rig) {
+  std::vector<Cells> rows;
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    const std::optional<double>&total = base.total_errors[i], &noise = base.std_errors[i];
+    rows.push_back(ValueCells(plan, units, total, i));
+    rows.back().push_back(total && units.IsPercent(i) ? ErrorCell(plan, units, total, i) : "");
+    rows.back().push_back(noise && units.IsPercent(i) ? ErrorCell(plan, units, noise, i) : "");
+    rows.back().push_back(total ? SourceOf(plan, i, rig) : "");
   }
-  return "[[Predicted errors]] (noise: " + bound + ")\n" +
-         AlignedTable({{""}, {"value"}, {"± total"}, {"unit", false, 1}, {"total"}, {"noise"}, {"error from"}}, rows,
-                      kTextIndent);
+  const bool has_bound = std::ranges::any_of(base.std_errors, [](const auto& error) { return error.has_value(); });
+  const std::string_view noise = plan.noise_of_levels ? "least squares" : has_bound ? "Cramér-Rao bound" : "as fitted";
+  return std::string("[[Predicted errors]] (noise: ").append(noise).append(")\n") +
+         AlignedTable({{""}, {"value"}, {"± total"}, {"unit", false, 1}, {"total %"}, {"noise %"}, {"error from"}},
+                      rows, kTextIndent);
 }
 
 /// The other recording that makes an error of inertia or friction smallest relative to what it is.
 std::string BestChangeText(const Plan& plan, const Units& units, const PlanRow& base) {
   constexpr double kSmaller = 1.25;  // times
+  const auto physical = std::span(base.total_errors).first(plan.physical);
+  if (std::ranges::none_of(physical, [](const auto& error) { return error.has_value(); })) return "";
   double best = kSmaller;
   std::string text =
       "No other amplitude, duration, rate or resolution makes an error of inertia or friction a fifth smaller.";
   for (const PlanRow& row : plan.rows) {
     for (std::size_t i = 0; i < plan.physical; ++i) {
       const auto &now = base.total_errors[i], &then = row.total_errors[i];
-      if (!now || !then || !(*now > best * *then)) continue;
+      if (!units.IsPercent(i) || !now || !then || !(*now > best * *then)) continue;
       best = *now / *then;
       const auto error = [&](const std::optional<double>& of) {
-        const std::string unit = units.IsPercent(i) ? "%" : units.Name(i);
-        return std::string("±").append(kNoBreak).append(ErrorCell(plan, units, of, i)).append(kNoBreak).append(unit);
+        return std::string("±").append(kNoBreak).append(ErrorCell(plan, units, of, i)).append(kNoBreak).append("%");
       };
       text = "The recording that helps most: " + std::string(row.factor) + " " + ValueText(row.value, row.unit) + ": " +
              std::string(plan.parameters[i].name) + " " + error(then) + " instead of " + error(now) + ".";
@@ -127,21 +137,15 @@ std::string BestChangeText(const Plan& plan, const Units& units, const PlanRow& 
   return text;
 }
 
-/// What is assumed of sensor and clock; empty if all is stated.
-std::string AssumedText(const SensorErrors& sensor) {
-  const EffectSize& clock = sensor.Of(SensorEffect::kClock);
-  const EffectSize& of_kind = sensor.Of(SensorEffect::kLag);
-  std::string text = sensor.is_kind_assumed ? of_kind.source : "";
-  if (clock.is_assumed) text += (text.empty() ? "" : ", ") + clock.source;
-  return text.empty() ? "" : "Assumed: " + text + " (--sensor).";
-}
-
 /// What makes the total errors smaller.
 std::string InvestmentText(const Plan& plan, const Units& units, const PlanRow& base) {
   std::string text = LargestErrorText(*plan.fit);
-  text += (text.empty() ? "" : " ") + BestChangeText(plan, units, base);
-  const std::string assumed = AssumedText(plan.sensor);
-  return Prose(assumed.empty() ? text : text + " " + assumed);
+  const std::string change = BestChangeText(plan, units, base);
+  if (!change.empty()) text += (text.empty() ? "" : " ") + change;
+  std::string assumed;
+  for (const std::string& one : SensorAssumptions(plan.sensor)) assumed += (assumed.empty() ? "" : "; ") + one;
+  if (!assumed.empty()) text += (text.empty() ? "" : " ") + std::string("Assumed: ") + assumed + ".";
+  return text.empty() ? "" : Prose(text);
 }
 
 std::vector<Column> FactorColumns(const Plan& plan) {
@@ -176,7 +180,9 @@ std::string FactorTable(const Plan& plan, const Units& units, std::vector<std::o
 }
 
 bool HasMissingValues(const PlanRow& row) {
-  return !row.linear_bias || std::ranges::any_of(row.std_errors, [](const auto& error) { return !error; });
+  const auto is_missing = [](const auto& error) { return !error; };
+  return !row.linear_bias || std::ranges::any_of(row.std_errors, is_missing) ||
+         (row.without_totals.empty() && std::ranges::any_of(row.total_errors, is_missing));
 }
 
 /// Explains why cells are "-".
@@ -186,6 +192,8 @@ std::string MissingText(const Plan& plan) {
   for (const PlanRow& row : plan.rows) {
     const std::string name = std::string(row.factor) + " " + ValueText(row.value, row.unit);
     if (!row.reason.empty()) text += Paragraph(name + ": " + row.reason + ".", "    - ", kTextWidth);
+    if (!row.without_totals.empty())
+      text += Paragraph(name + ", total errors: " + row.without_totals + ".", "    - ", kTextWidth);
     others = others || (row.reason.empty() && HasMissingValues(row));
   }
   if (!others) return text;
@@ -225,9 +233,9 @@ std::string SlowText(const Plan& plan) {
 }
 
 std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
-  std::string text = std::string(
-                         "To know inertia to 0.1 %, choose a line with at most 0.1 under inertia; the last column "
-                         "gives the error of the linear formulas without any noise. ") +
+  std::string text = std::string("To know inertia to 0.1 %, choose a line") + (plan.fit ? " of the first table" : "") +
+                     " with at most 0.1 under inertia; the last column gives the error of the linear formulas without "
+                     "any noise. " +
                      SlowText(plan);
   if (plan.noise_of_levels) {
     text += "Levels without noise have no Cramér-Rao bound, so they are treated as white noise of " +
@@ -249,8 +257,8 @@ std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
 std::string PlanText(const Plan& plan, const std::optional<Rig>& rig, TextExtent extent) {
   const Units units(plan, rig);
   const auto base = std::ranges::find_if(plan.rows, &PlanRow::is_base);
-  std::string text = BaseText(plan, units, *base, rig);
-  if (plan.fit) text += InvestmentText(plan, units, *base);
+  std::string text = plan.fit ? TotalText(plan, units, *base, rig) + InvestmentText(plan, units, *base)
+                              : NoiseText(plan, units, *base);
   if (!plan.without_totals.empty()) text += Prose("Without sensor, clock and rig: " + plan.without_totals + ".");
   const std::string bias = Prose(BiasText(plan, base->std_errors.front().has_value()));
   if (extent == TextExtent::kSummary) {

@@ -411,31 +411,16 @@ std::vector<Warning> WithoutAssumptions(std::vector<Warning> warnings) {
 
 // ---- Assumptions ----------------------------------------------------------------------------------------------------
 
-/// "an encoder".
-std::string WithArticle(const std::string& noun) {
-  return (std::string_view("aeio").find(noun.front()) < 4 ? "an " : "a ") + noun;
-}
-
 /// Adds an assumption if it is not among them.
 void AddOnce(std::string text, std::vector<std::string>& assumptions) {
   if (!text.empty() && std::ranges::find(assumptions, text) == assumptions.end())
     assumptions.push_back(std::move(text));
 }
 
-/// "clock ±1 % for times on an exact grid (--sensor)", if nobody stated the clock and it may matter.
-std::string ClockText(const SensorErrors& sensor) {
-  constexpr double kMatters = 1e-3;  // a quartz crystal is better
-  const EffectSize& clock = sensor.Of(SensorEffect::kClock);
-  if (!clock.is_assumed || !(clock.std_dev >= kMatters)) return "";
-  return "clock ±" + PlainSizeText(clock.std_dev, "1") + " for " + clock.source + " (--sensor)";
-}
-
 /// What was assumed of sensors and clocks, if errors follow from it.
 void AddSensors(const Identification& identification, std::vector<std::string>& assumptions) {
   for (const IdentifiedRecording& recording : identification.recordings) {
-    const SensorErrors& sensor = recording.data.sensor;
-    if (sensor.is_kind_assumed && !sensor.kind.empty()) AddOnce(WithArticle(sensor.kind) + " (--sensor)", assumptions);
-    AddOnce(ClockText(sensor), assumptions);
+    for (const std::string& assumed : SensorAssumptions(recording.data.sensor)) AddOnce(assumed, assumptions);
   }
 }
 

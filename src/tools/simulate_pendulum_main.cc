@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "pendulum/analysis/plan.h"
-#include "pendulum/analysis/planned_budget.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/try.h"
 #include "pendulum/model/gravity/registry.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/model/rig.h"
 #include "pendulum/report/plan_text.h"
+#include "pendulum/request/planned_budget.h"
 #include "tools/output.h"
 #include "tools/run_tool.h"
 #include "tools/simulate_pendulum_files.h"
@@ -34,8 +34,8 @@ std::string Usage() {
          "Models: " +
          MotionModelNames() +
          ".\n"
-         "Exit codes: 0 done, 2 wrong flags, 3 rig not found, 4 unreadable rig, 5 the pendulum never moves, 70 a bug,\n"
-         "73 an output cannot be written.\n"
+         "Exit codes: 0 done, 2 wrong flags, 3 rig or sensor not found, 4 unreadable rig or sensor, 5 the pendulum\n"
+         "never moves, 70 a bug, 73 an output cannot be written.\n"
          "\n";
 }
 
@@ -68,7 +68,7 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Instead of simulating, predicts the error of each parameter by noise (Cramér-Rao), sensor, clock and rig, what "
        "makes it smaller, and how amplitude, duration, rate and resolution change it; default off."},
       {"sensor", &Flags::sensor,
-       "In a plan: what the sensor may do to the readings, as in fit_pendulum; default an angle sensor or a gyro."},
+       "In a plan: what the sensor may do to the readings, as in fit_pendulum; default assumed."},
       {"details", &Flags::details,
        "In a plan: prints what other amplitudes, durations, rates and resolutions would give; default off."},
       {"count", &Flags::count,
@@ -118,7 +118,9 @@ Result<void> WritePlan(const SimulateOptions& options, const std::optional<Rig>&
   SyntheticOptions planned = options.synthetic;
   planned.lost_counts.clear();
   ASSIGN_OR_RETURN(Plan plan, MakePlan(planned));
-  AddTotalErrors(rig, options.sensor, plan);
+  Simulation simulation = static_cast<const Simulation&>(options);
+  simulation.synthetic = planned;
+  AddTotalErrors(simulation, rig, options.sensor, plan);
   return WriteOutputs(
       std::vector<Output>{{"-", PlanText(plan, rig, options.details ? TextExtent::kAll : TextExtent::kSummary)}});
 }

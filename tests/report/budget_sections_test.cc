@@ -58,9 +58,9 @@ TEST(BudgetJson, HasThePartsOfEachParameter) {
 
 // By hand: the root of 1² + 8² + 1² is 8.12, so 1.0 % of 0.08; without the clock 0.18 %.
 TEST(LargestErrorText, SaysWhatLessOfItWouldGive) {
-  EXPECT_EQ(
-      WithBlanks(LargestErrorText(FitWithBudget())),
-      "Largest error: clock; compare the recorder's clock with a watch (--sensor): inertia ± 1 %, at best ± 0.18 %.");
+  EXPECT_EQ(WithBlanks(LargestErrorText(FitWithBudget())),
+            "Improve first: clock; compare the recorder's clock with a watch (--sensor): inertia ± 1 %, at "
+            "best ± 0.18 %.");
 }
 
 TEST(LargestErrorText, IsEmptyIfNothingCanBeDone) {

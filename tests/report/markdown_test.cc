@@ -91,7 +91,7 @@ No result with drag: 100 iterations were not enough.
 0.0790 th'' + 0.0030 th' + 1.80 sin th = 0
 ```
 
-Weakly identifiable: viscous. Largest error: gravity torque; weigh the pendulum held horizontal: inertia ± 1.3 %, at best ± 0.32 %.
+Weakly identifiable: viscous. Improve first: gravity torque; weigh the pendulum held horizontal: inertia ± 1.3 %, at best ± 0.32 %.
 
 The textbook's log decrement gives I_O 0.08020 (1.5 % more), b 0.003060 (agrees).
 

@@ -39,7 +39,7 @@ Plan ExamplePlan() {
 TEST(PlanText, ShowsTheBaseInSiAndRowsInPercent) {
   EXPECT_EQ(
       PlanText(ExamplePlan(), ExampleRig()),
-      "[[Predicted standard errors]] (the Cramér-Rao bound, no unbiased fit has less)\n"
+      "[[Predicted standard errors]] (Cramér-Rao bound)\n"
       "    inertia        0.0800000  ± 0.0000010 kg m^2     0.0013 %\n"
       "    viscous        0.003000   ± 0.000030  N m s/rad  1 %\n"
       "    release_angle  -0.42300   ± 0.00009   rad\n"
@@ -99,17 +99,17 @@ Plan PlanWithTotals() {
 
 TEST(PlanText, SaysWhereErrorsComeFromAndWhatMakesThemSmaller) {
   EXPECT_EQ(PlanText(PlanWithTotals(), ExampleRig(), TextExtent::kSummary),
-            "[[Predicted errors]] (noise: the Cramér-Rao bound, no unbiased fit has less)\n"
-            "                   value     ± total    unit       total  noise     error from\n"
-            "    inertia        0.0800    ± 0.0005   kg m^2     0.6 %  0.0013 %  clock\n"
-            "    viscous        0.003000  ± 0.000030 N m s/rad  1 %    1 %       noise\n"
-            "    release_angle  -0.42300  ± 0.00009  rad               9e-05     noise\n"
-            "    release_time   1.90000   ± 0.00005  s                 5.2e-05   noise\n"
-            "    zero_angle     (0.0      ± 3.0)e-05 rad               3e-05     noise\n"
-            "    Largest error: clock; compare the recorder's clock with a watch (--sensor):\n"
+            "[[Predicted errors]] (noise: Cramér-Rao bound)\n"
+            "                   value     ± total    unit       total %  noise %  error from\n"
+            "    inertia        0.0800    ± 0.0005   kg m^2     0.6      0.0013   clock\n"
+            "    viscous        0.003000  ± 0.000030 N m s/rad  1        1        noise\n"
+            "    release_angle  -0.42300  ± 0.00009  rad                          noise\n"
+            "    release_time   1.90000   ± 0.00005  s                            noise\n"
+            "    zero_angle     (0.0      ± 3.0)e-05 rad                          noise\n"
+            "    Improve first: clock; compare the recorder's clock with a watch (--sensor):\n"
             "    inertia ±\u00a00.6\u00a0%, at best ±\u00a00.0013\u00a0%. The recording that helps most: duration\n"
-            "    40 s: viscous ±\u00a00.13\u00a0% instead of ±\u00a01\u00a0%. Assumed: a ceramic resonator\n"
-            "    (--sensor).\n"
+            "    40 s: viscous ±\u00a00.13\u00a0% instead of ±\u00a01\u00a0%. Assumed: clock ±0.3 % for a ceramic\n"
+            "    resonator (--sensor).\n"
             "    The linear formulas (inertia from damped period and logarithmic decrement,\n"
             "    sin θ = θ; all whole periods, turning points without error) have an error\n"
             "    above the standard error of inertia beyond an amplitude of 0.0113 rad (0.65\n"
@@ -198,7 +198,7 @@ TEST(PlanText, ExplainsLevelsWithoutNoise) {
   Plan plan = ExamplePlan();
   plan.noise_of_levels = 0.001;
   const std::string text = PlanText(plan, {});
-  EXPECT_THAT(text, testing::StartsWith("[[Predicted standard errors]] (of least squares)\n"));
+  EXPECT_THAT(text, testing::StartsWith("[[Predicted standard errors]] (least squares)\n"));
   EXPECT_THAT(text, HasSubstr("0.001 rad (their spacing"));
   plan.parameters.back() = kRateBias;
   EXPECT_THAT(PlanText(plan, {}), HasSubstr("0.001 rad/s (their spacing"));

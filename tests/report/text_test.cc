@@ -68,8 +68,8 @@ constexpr const char* kWholeFit = R"([[Data]]
     No standard error of coulomb: the estimate is at its lower bound 0.
     Standard errors: sandwich, as the residuals are AR(2).
     Intervals: profile likelihood.
-    These are of noise alone; total errors have the rest of the error budget,
-    too.
+    These are of noise alone; the total errors and intervals contain the whole
+    error budget.
     viscous is weakly identifiable (its effect can be compensated by coulomb):
     let it swing for longer.
     coulomb is weakly identifiable: let it come to rest.

@@ -157,11 +157,11 @@ def record(lab: Lab) -> Recording:
         truth["presliding_angle"] = law.coulomb / lab.body.friction.stiffness
     if law.stiction is not None:
         truth |= {"stiction": law.stiction, "stribeck_rate": law.stribeck_rate}
-    drift = lab.sensor.drift + lab.sensor.thermal
+    drift = lab.sensor.zero_motion(numpy.linspace(0, lab.duration, 1000), lab.duration)
     if lab.camera:
         truth["zero_angle"] = lab.camera.level
     else:  # what the sensor shows where gravity has no torque
         truth["rate_bias" if lab.is_gyro else "zero_angle"] = lab.sensor.zero + float(lab.sensor.curve(numpy.zeros(1))[0])
     return Recording(_text(lab, names, stamps, columns), lab.rig, motion, truth, lab.clock.stamp_scale,
-                     (min(drift, 0.0), max(drift, 0.0)),
+                     (float(drift.min()), float(drift.max())),
                      lab.hand.finger_time * lab.clock.stamp_scale if lab.hand.finger_share else 0.0)

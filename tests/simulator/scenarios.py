@@ -192,7 +192,7 @@ add("sensor", "sine", "curve: 0.3 deg, a sine over 60 deg", "modelled", CURVE,
 add("sensor", "eccentric", "eccentric by 0.5 deg over a turn", "budgeted", CURVE,
     lambda lab: lab.set_curve(eccentricity=0.5 * DEG, eccentric_phase=turn(lab)), is_core=True)
 add_sizes("sensor", "backlash_{}", "backlash of {} deg", "modelled", PLAY, [0.05, 0.2],
-          lambda lab, width: lab.set("sensor", play=width * DEG), core=[0.05])
+          lambda lab, width: lab.set("sensor", play=width * DEG, play_place=lab.rng.uniform(-1, 1)), core=[0.05])
 add_sizes("sensor", "lag_{}", "filter with a lag of {} ms", "modelled", LAG, [5, 20],
           lambda lab, milliseconds: lab.set("sensor", lag=milliseconds / 1000))
 add("sensor", "delay_2", "readings 2 ms late", "budgeted", LAG, lambda lab: lab.set("sensor", delay=0.002))

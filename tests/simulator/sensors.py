@@ -47,9 +47,11 @@ class Curve:
         return shown
 
 
-def with_play(values: Array, width: float) -> Array:
-    """Output of a play operator: it follows within +- width/2 and stays while the input is inside."""
-    shown, half, last = numpy.empty(len(values)), width / 2, float(values[0])
+def with_play(values: Array, width: float, place: float = 0.0) -> Array:
+    """Output of a play operator: it follows within +- width/2 and stays while the input is inside. At first it is at `place`
+    in the gap, from -1 to 1."""
+    shown, half = numpy.empty(len(values)), width / 2
+    last = float(values[0]) + place * half
     for index, value in enumerate(values.tolist()):
         last = min(max(last, value - half), value + half)
         shown[index] = last
@@ -80,6 +82,7 @@ class Sensor:
     zero: float = 0.0
     curve: Curve = Curve()
     play: float = 0.0  # full width
+    play_place: float = 0.0  # where in the gap the sensor is at first, from -1 to 1
     lag: float = 0.0  # s, first order
     delay: float = 0.0  # s, of a value against its time stamp
     drift: float = 0.0  # over the whole recording, linear
@@ -98,13 +101,14 @@ class Sensor:
         grid = numpy.arange(first - self.delay - WARM_UP, last + 2 * FINE_STEP, FINE_STEP)
         values = signal(grid)
         if self.play:
-            values = with_play(values, self.play)
+            values = with_play(values, self.play, self.play_place)
         values = self.curve(values)
         if self.lag:
             values = with_lag(values, FINE_STEP, self.lag)
         return lambda times: numpy.interp(times, grid, values)
 
-    def _drift(self, times: Array, duration: float) -> Array:
+    def zero_motion(self, times: Array, duration: float) -> Array:
+        """How far the zero has moved since time 0."""
         return self.drift * times / duration + self.thermal * (1 - numpy.exp(-times / self.thermal_time))
 
     def read(self, signal: Signal, times: Array, rng: numpy.random.Generator) -> Array:
@@ -112,7 +116,7 @@ class Sensor:
         span = self.conversion_time * (self.conversions - 1) / 2
         seen = self._filtered(signal, times[0] - span, times[-1] + span)
         each = times[:, None] + numpy.linspace(-span, span, self.conversions)[None, :]
-        values = seen(each.ravel() - self.delay).reshape(each.shape) + self.zero + self._drift(each, times[-1])
+        values = seen(each.ravel() - self.delay).reshape(each.shape) + self.zero + self.zero_motion(each, times[-1])
         if self.correlation:
             values = values + noise.autoregressive(rng, self.sigma, self.correlation, len(times))[:, None]
         else:

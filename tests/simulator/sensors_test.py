@@ -67,6 +67,7 @@ class DynamicsTest(unittest.TestCase):
         numpy.testing.assert_allclose((signal - shown)[middle & rising], 0.1, atol=1e-9)
         numpy.testing.assert_allclose((signal - shown)[middle & ~rising], -0.1, atol=1e-9)
         self.assertAlmostEqual(shown.max(), 0.9, delta=1e-9)
+        numpy.testing.assert_allclose(with_play(signal, 0.2, 1.0)[:5], 0.1, atol=1e-9)
 
 
 class CurveTest(unittest.TestCase):

@@ -16,6 +16,7 @@ BINARY = pathlib.Path()
 START = "release_angle=0.4,release_time=0.5"
 MOTION = f"inertia=0.04,viscous=0.001,{START}"
 SHORT = ["--duration", "1"]
+SENSOR = '{"kind": "ideal", "clock": 0.0001}'  # so that noise and rig are not hidden
 NOISY = ["--set", MOTION, "--noise", "0.2", "--resolution", "0.1985"]
 
 
@@ -201,11 +202,12 @@ class SimulatePendulumTest(unittest.TestCase):
 
     def test_plan_predicts_on_stdout_and_makes_no_file(self):
         self.write_rig('{"gravity_torque": 2}')
-        with_rig = self.check_made(*NOISY, "--plan", "--details", "--rig", "rig.json")
-        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.000\d+ +kg m\^2 +1 % +0\.\d+ % +gravity torque\n")
+        with_rig = self.check_made(*NOISY, "--plan", "--details", "--rig", "rig.json", "--sensor", SENSOR)
+        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.000\d+ +kg m\^2 +1 +0\.\d+ +gravity torque\n")
         self.assertRegex(with_rig, r"\n    duration +80 s +\d")
-        without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan", "--details")
-        self.assertRegex(without, r"\n    inertia +0\.0200\d* +± 0\.000\d+ +s\^2 +0\.\d+ % +0\.\d+ % +\w")
+        without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan", "--details",
+                                  "--sensor", SENSOR)
+        self.assertRegex(without, r"\n    inertia +0\.0200\d* +± 0\.000\d+ +s\^2 +0\.\d+ +0\.\d+ +\w")
         rows = [[line for line in text.splitlines() if line.startswith("    resolution")] for text in (with_rig, without)]
         self.assertEqual(len(rows[0]), 6)
         of_noise = [[row.split()[:7] for row in of_text[3:]] for of_text in rows]
@@ -217,10 +219,11 @@ class SimulatePendulumTest(unittest.TestCase):
         (self.folder / "sensor.json").write_text(sensor, encoding="utf-8")
         for stated in (sensor, "sensor.json"):
             text = self.check_made(*NOISY, "--plan", "--sensor", stated)
-            self.assertRegex(text, r"\n    inertia .* 0\.6 % +0\.\d+ % +clock\n")
-            self.assertIn("Largest error: clock; compare the recorder's clock with a watch", text)
+            self.assertRegex(text, r"\n    inertia .* 0\.6 +0\.\d+ +clock\n")
+            self.assertIn("Improve first: clock; compare the recorder's clock with a watch", text)
             self.assertNotIn("Assumed", text)
-        self.assertIn("Assumed: an angle sensor, a quartz crystal", self.check_made(*NOISY, "--plan").replace("\n    ", " "))
+        assumed = self.check_made(*NOISY, "--plan").replace("\n    ", " ")
+        self.assertIn("Assumed: an angle sensor (--sensor); clock ±1 % for times on an exact grid (--sensor).", assumed)
 
     def test_plan_refuses_outputs_and_what_it_cannot_predict(self):
         self.check_refused(2, "--out contradicts --plan", *NOISY, "--plan", "--out", "run.csv")

@@ -30,6 +30,7 @@ struct PlanRow {
   SyntheticOptions run = {};                      ///< The recording.
   /// P, with rig, sensor and clock (AddTotalErrors); empty without them.
   std::vector<std::optional<double>> total_errors = {};
+  std::string without_totals = {};  ///< Why its recording has no total errors; empty if it has.
 };
 
 /// Predicted accuracy of recordings of a rig; one factor varies at a time.
@@ -44,7 +45,8 @@ struct Plan {
   /// of friction and finite amplitude cancel. At smaller ones the bias is smaller than the error, or there is no whole
   /// period. May be absent.
   std::optional<double> amplitude_of_equal_bias;
-  /// What fit_pendulum would report of the base case, with the true values and the errors above (AddTotalErrors).
+  /// A fit to the simulated base case whose estimates are the true values, and whose standard errors are the bounds of
+  /// the noise if there are any (AddTotalErrors). Its intervals and derived quantities are those of that recording.
   std::optional<FitReport> fit;
   SensorErrors sensor;         ///< Of that fit.
   std::string without_totals;  ///< Why there is no such fit; empty before AddTotalErrors and if there is one.

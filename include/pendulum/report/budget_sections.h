@@ -29,8 +29,13 @@ Sections BudgetSections(const FitReport& fit);
 /// The same as JSON, with the parts of all parameters.
 nlohmann::ordered_json BudgetJson(const FitReport& fit);
 
-/// "Largest error: clock; compare ...: inertia ± 2 %, at best ± 0.3 %.": the line without which the error of inertia or
-/// friction would be smallest relative to what it is; empty if it would hardly be smaller, or nothing can be done.
+/// "Improve first: clock; compare ...: inertia ± 2 %, at best ± 0.3 %.": the line without which the error of
+/// inertia or friction would be smallest relative to what it is; empty if it would hardly be smaller, or nothing can be
+/// done.
 std::string LargestErrorText(const FitReport& fit);
+
+/// What was assumed of sensor and clock: "an angle sensor (--sensor)", and "clock ±1 % for times on an exact grid
+/// (--sensor)" if it may matter.
+std::vector<std::string> SensorAssumptions(const SensorErrors& sensor);
 
 }  // namespace pendulum

@@ -248,20 +248,27 @@ class EffectTests {
   std::vector<Cause> corrected_;
 };
 
+/// What the F free parameters take up of each effect, F x E: (J'J)^-1 J'C. All of it is from the same rows: the
+/// information of all samples is a little different, so that a lag would not be taken up by the release time alone.
+MatrixXd TakenUp(const EffectSums& sums) {
+  const Index parameters = sums.parameters, effects = sums.information.cols() - parameters;
+  return sums.information.topLeftCorner(parameters, parameters)
+      .ldlt()
+      .solve(sums.information.topRightCorner(parameters, effects));
+}
+
 /// The size of a single effect, or the largest change of the readings by several without what the parameters take up.
-void SetSize(const EffectTests& tests, const EffectSums& sums, const WeightedRows& rows,
+void SetSize(const EffectTests& tests, const EffectSums& sums, const MatrixXd& taken, const WeightedRows& rows,
              const std::vector<Index>& columns, Suspicion& suspicion) {
   const EffectSizes sizes = tests.Estimate(columns);
-  if (columns.size() == 1 && suspicion.cause != Cause::kFrictionLaw) {
+  // Of a play the first effect is its width, the other where in it the hold was.
+  if ((columns.size() == 1 && suspicion.cause != Cause::kFrictionLaw) || suspicion.cause == Cause::kBacklash) {
     suspicion.size = sizes.mean[0] + tests.applied()[columns[0] - sums.parameters];
     suspicion.std_error = std::sqrt(std::max(sizes.covariance(0, 0), 0.0));
     return;
   }
-  const Index parameters = sums.parameters;
-  const MatrixXd taken = sums.information.topLeftCorner(parameters, parameters)
-                             .ldlt()
-                             .solve(sums.information(Eigen::seqN(0, parameters), columns));
-  const MatrixXd left = rows.columns(Eigen::all, columns) - rows.columns.leftCols(parameters) * taken;
+  const MatrixXd left = rows.columns(Eigen::all, columns) -
+                        rows.columns.leftCols(sums.parameters) * taken(Eigen::all, tests.EffectsAt(columns));
   const VectorXd total = sizes.mean + tests.applied()(tests.EffectsAt(columns));
   const VectorXd change = left * total;
   Index at = 0;
@@ -278,9 +285,10 @@ struct FrictionPull {
   VectorXd std_dev;  // P
 };
 
-/// Before the recording, each term has the standard deviation unseen_std_dev; nothing is known if that is 0.
+/// taken: TakenUp. Before the recording, each term has the standard deviation unseen_std_dev; nothing is known if that
+/// is 0.
 FrictionPull PullOf(const std::vector<Index>& columns, const EffectTests& tests, const EffectSums& sums,
-                    const Optimum& optimum) {
+                    const MatrixXd& taken, const Optimum& optimum) {
   FrictionPull pull{VectorXd::Zero(optimum.gradient.size()), VectorXd::Zero(optimum.gradient.size())};
   if (columns.empty()) return pull;
   const auto count = static_cast<Index>(columns.size());
@@ -290,7 +298,7 @@ FrictionPull PullOf(const std::vector<Index>& columns, const EffectTests& tests,
     if (std_dev > 0) priors.precision[static_cast<Index>(k)] = 1 / (std_dev * std_dev);
   }
   const EffectSizes sizes = EstimateEffects(sums, columns, priors);
-  const MatrixXd moved = optimum.inverse.matrix * sums.information(Eigen::seqN(0, sums.parameters), columns);
+  const MatrixXd moved = taken(Eigen::all, tests.EffectsAt(columns));
   pull.shift(optimum.free) = moved * sizes.mean;
   pull.std_dev(optimum.free) = (moved * sizes.covariance * moved.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
   return pull;
@@ -299,11 +307,11 @@ FrictionPull PullOf(const std::vector<Index>& columns, const EffectTests& tests,
 /// How far the estimates are off by the friction with the strongest evidence among what was named. What is named beside
 /// it only improves the description, and compensates for viscous and dry friction almost at will.
 VectorXd NamedFriction(const std::vector<Suspicion>& suspicions, const EffectTests& tests, const EffectSums& sums,
-                       const Optimum& optimum) {
+                       const MatrixXd& taken, const Optimum& optimum) {
   const auto strongest = std::ranges::find_if_not(suspicions, IsCorrectable, &Suspicion::cause);
   const std::vector<Cause> named =
       strongest == suspicions.end() ? std::vector<Cause>{} : std::vector<Cause>{strongest->cause};
-  const FrictionPull pull = PullOf(tests.ColumnsOf(named), tests, sums, optimum);
+  const FrictionPull pull = PullOf(tests.ColumnsOf(named), tests, sums, taken, optimum);
   return (pull.shift.cwiseAbs2() + pull.std_dev.cwiseAbs2()).cwiseSqrt();
 }
 
@@ -332,7 +340,7 @@ Correction CorrectionOf(const EffectTests& tests, const Correction& known, const
   for (std::size_t k = 0; k < columns.size(); ++k) {
     double& size = correction.sizes[columns[k] - tests.parameters()];
     size += change[static_cast<Index>(k)];
-    if (tests.EffectOf(columns[k]).cause == Cause::kBacklash) correction.play = std::abs(size);
+    if (tests.EffectOf(columns[k]).cause == Cause::kBacklash && correction.play == 0) correction.play = std::abs(size);
   }
   return correction;
 }
@@ -361,18 +369,19 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
   jacobian = MatrixXd(jacobian(bins.middle, Eigen::all));
   const WeightedRows rows = RowsOf(problem, solution, bins, jacobian(Eigen::all, optimum.free), effects.columns);
   const EffectSums sums = SumsOf(problem, cost, solution, rows, optimum);
+  const MatrixXd taken = TakenUp(sums);
   const EffectTests tests(effects, sums, known);
 
   for (const Cause cause : known.causes) {
     check.suspicions.push_back({cause, 0, 0, UnitOf(cause, recording), 0, true});
-    SetSize(tests, sums, rows, tests.ColumnsOf({cause}), check.suspicions.back());
+    SetSize(tests, sums, taken, rows, tests.ColumnsOf({cause}), check.suspicions.back());
   }
   // Beside the causes that were named after it, a former one may have become superfluous.
   std::erase_if(check.suspicions, [](const Suspicion& one) { return std::abs(one.size) < 2 * one.std_error; });
   if (MayTest(solution.noise, problem.resolution)) {
     for (const auto& [cause, test] : tests.NameCauses(static_cast<double>(problem.data.time.size()))) {
       check.suspicions.push_back({cause, 0, 0, UnitOf(cause, recording), test.significance, false});
-      SetSize(tests, sums, rows, tests.ColumnsOf({cause}), check.suspicions.back());
+      SetSize(tests, sums, taken, rows, tests.ColumnsOf({cause}), check.suspicions.back());
     }
     if (MayCorrect(problem, solution.noise)) check.correction = CorrectionOf(tests, known, check.suspicions);
     if (!check.correction.causes.empty()) {
@@ -386,13 +395,14 @@ EffectCheck CheckEffects(const Recording& recording, const FitProblem& problem, 
     }
   }
 
-  const FrictionPull unseen = PullOf(tests.UnseenColumns(), tests, sums, optimum);
+  const FrictionPull unseen = PullOf(tests.UnseenColumns(), tests, sums, taken, optimum);
   check.unseen_friction = unseen.std_dev;
   check.hidden_friction = (unseen.shift.cwiseAbs2() - unseen.std_dev.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
-  check.named_friction = NamedFriction(check.suspicions, tests, sums, optimum);
+  check.named_friction = NamedFriction(check.suspicions, tests, sums, taken, optimum);
   const Index count = effects.columns.cols();
   for (const Effect& effect : effects.effects) check.causes.push_back(effect.cause);
   check.pull = (rows.deviation.asDiagonal() * jacobian).transpose() * rows.columns.rightCols(count);
+  check.pull(optimum.free, Eigen::all) = optimum.information(optimum.free, optimum.free) * taken;
   check.second_moment = MatrixXd::Zero(count, count);
   const std::vector<Index> budget = tests.BudgetColumns(check.suspicions);
   if (budget.empty()) return check;

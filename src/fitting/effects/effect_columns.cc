@@ -118,6 +118,9 @@ void AddDrift(const SensorErrors& sensor, const FittedSwing& swing, ColumnWriter
   writer.AddPlausible(Cause::kDrift, size, 1 - (-kWarming * share.array()).exp());
 }
 
+/// 1 before the release, 0 after it.
+VectorXd Held(const FittedSwing& swing) { return (swing.time.array() < swing.release).cast<double>(); }
+
 /// What a play of this width changes in the readings, over the width: the sensor stays until the pendulum has crossed
 /// the gap (the play operator of M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with Hysteresis, 1989). A hold is
 /// taken to be in the middle of the gap, a motion at its end. The turning point between two samples is that of a
@@ -146,7 +149,10 @@ void AddSensorEffects(const SensorErrors& sensor, const FitProblem& problem, con
   writer.AddPlausible(Cause::kLag, sensor.Of(SensorEffect::kLag).std_dev, -swing.slope);
   if (!ShowsRate(problem) && problem.zero_motion != ZeroMotion::kLags) {
     const double size = sensor.Of(SensorEffect::kBacklash).std_dev;
-    if (size > 0) writer.Add({Cause::kBacklash, size}, PlayColumn(swing, play > 0 ? play : size));
+    if (size > 0) {
+      writer.Add({Cause::kBacklash, size}, PlayColumn(swing, play > 0 ? play : size));
+      if (swing.is_held) writer.Add({Cause::kBacklash, size / std::sqrt(12.0)}, Held(swing));
+    }
   }
   if (problem.zero_motion != ZeroMotion::kDrifts) AddDrift(sensor, swing, writer);
 }
@@ -154,7 +160,7 @@ void AddSensorEffects(const SensorErrors& sensor, const FitProblem& problem, con
 /// The hold at another angle than that of the release, and a hold that creeps.
 void AddHold(const FitProblem& problem, const FittedSwing& swing, ColumnWriter& writer) {
   if (ShowsRate(problem) || !swing.is_held || !(swing.release > 0)) return;
-  const VectorXd held = (swing.time.array() < swing.release).cast<double>();
+  const VectorXd held = Held(swing);
   writer.Add({Cause::kHold}, held);
   writer.Add({Cause::kHold}, held.array() * (swing.time.array() / swing.release - 1));
 }

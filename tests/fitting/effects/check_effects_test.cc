@@ -141,6 +141,29 @@ TEST(CheckEffects, FindsADrift) {
   EXPECT_LT(std::abs(InertiaDeviation(fit, run)), 4);
 }
 
+// A play of four plausible widths, with the hold at an end of the gap.
+TEST(CheckEffects, FindsThePlayOfASensorAndItsWidth) {
+  constexpr double kWidth = 1.0 * kPi / 180;
+  SyntheticOptions run = CleanRun(1);
+  run.noise *= 0.5;
+  SyntheticOptions quiet = run;
+  quiet.noise = quiet.resolution = 0;
+  const Recording motion = Must(SimulateRecording(quiet));
+  Eigen::Index i = 0;
+  double shown = motion.value[0] + kWidth / 2;
+  const Recording recording = Disturbed(run, [&](double y, double) {
+    const double angle = motion.value[i++];
+    shown = std::clamp(shown, angle - kWidth / 2, angle + kWidth / 2);
+    return y + shown - angle;
+  });
+  const FitReport fit = Fit(recording, ModelOptions("coulomb"));
+  const Suspicion* const play = FindSuspicion(fit, Cause::kBacklash);
+  ASSERT_NE(play, nullptr);
+  EXPECT_TRUE(play->is_corrected);
+  EXPECT_NEAR(play->size, kWidth, 0.05 * kWidth);
+  EXPECT_LT(std::abs(InertiaDeviation(fit, run)), 3);
+}
+
 TEST(CheckEffects, FindsAHoldAtAnotherAngle) {
   const SyntheticOptions run = CleanRun(6);
   const auto shift = [&](double y, double t) { return t < run.release_time - 0.2 ? y + 0.007 : y; };

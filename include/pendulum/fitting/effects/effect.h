@@ -41,8 +41,8 @@ constexpr bool IsCorrectable(Cause cause) { return cause <= Cause::kHold; }
 /// One cause and how strongly the residuals suggest it.
 struct Suspicion {
   Cause cause = Cause::kGain;
-  /// Of a single effect its size, with a sign. Of several, and of friction, the largest change of the readings by them,
-  /// without what the parameters take up.
+  /// Of a single effect its size, with a sign; of a play its width. Of several, and of friction, the largest change of
+  /// the readings by them, without what the parameters take up.
   double size = 0;
   double std_error = 0;       ///< Of `size`.
   std::string unit;           ///< Of size and std_error: "1" for the gain, "s" for the lag, else that of the readings.

@@ -32,7 +32,7 @@ struct EffectColumns {
 /// accelerometer, none for a gyro of unknown scale. A cause of the sensor whose plausible size is 0 and a friction that
 /// the law has are not among them, and no push and no friction if two samples are more than a quarter period apart.
 /// `at`: increasing indices of two samples or more, which are the rows of the columns. `play`: the width of a play in
-/// the unit of the readings, to which its column is in proportion only nearly; 0: the plausible one.
+/// the unit of the readings, with which its effect grows only nearly in proportion; 0: the plausible one.
 EffectColumns EffectColumnsAt(const SensorErrors& sensor, const FitProblem& problem, const TrajectoryCost& cost,
                               const Solution& solution, const std::vector<Eigen::Index>& at, double play = 0);
 

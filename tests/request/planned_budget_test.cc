@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/analysis/planned_budget.h"
+#include "pendulum/request/planned_budget.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/model/rig.h"
 #include "pendulum/recording/sensor_statement.h"
 #include "tests/fitting/fit_support.h"
 
@@ -20,22 +21,27 @@ using testing::IsEmpty;
 using testing::Not;
 
 /// 40 s at 50 Hz, 32 periods, from 0.4 rad with a hold of 1 s.
-SyntheticOptions ViscousRun() {
-  SyntheticOptions run;
-  run.model = Must(FindMotionModel("viscous"));
-  run.parameters = {0.04, 0.001};
-  run.release_angle = 0.4;
-  run.release_time = 1;
-  run.duration = 40;
-  run.sample_rate = 50;
-  run.noise = 1e-3;
-  return run;
+SimulationFlags ViscousRun() {
+  SimulationFlags flags;
+  flags.model = "viscous";
+  flags.set = "inertia=0.04,viscous=0.001,release_angle=0.4,release_time=1";
+  flags.unit = "rad";
+  flags.duration = 40;
+  flags.rate = 50;
+  flags.noise = 1e-3;
+  return flags;
+}
+
+Plan PlanOf(const SimulationFlags& flags, const std::optional<SensorStatement>& sensor,
+            const std::optional<Rig>& rig = std::nullopt) {
+  const Simulation simulation = Must(MakeSimulation(flags, rig));
+  Plan plan = Must(MakePlan(simulation.synthetic));
+  AddTotalErrors(simulation, rig, sensor, plan);
+  return plan;
 }
 
 Plan PlanWith(const std::string& sensor, const std::optional<Rig>& rig = std::nullopt) {
-  Plan plan = Must(MakePlan(ViscousRun()));
-  AddTotalErrors(rig, Must(ParseSensorStatement(sensor, "sensor", "given")), plan);
-  return plan;
+  return PlanOf(ViscousRun(), Must(ParseSensorStatement(sensor, "sensor", "given")), rig);
 }
 
 const PlanRow& BaseOf(const Plan& plan) { return *std::ranges::find_if(plan.rows, &PlanRow::is_base); }
@@ -43,7 +49,7 @@ const PlanRow& BaseOf(const Plan& plan) { return *std::ranges::find_if(plan.rows
 double RelativeTotal(const Plan& plan, std::size_t i) { return BaseOf(plan).total_errors[i].value() / plan.truth[i]; }
 
 TEST(AddTotalErrors, AddsNothingToNoiseWhereAllIsExact) {
-  const Plan plan = PlanWith("ideal");
+  const Plan plan = PlanWith(R"({"kind": "ideal", "clock": 0})");
   for (const PlanRow& row : plan.rows) EXPECT_EQ(row.total_errors, row.std_errors) << row.factor << " " << row.value;
 }
 
@@ -56,11 +62,13 @@ TEST(AddTotalErrors, DoublesTheErrorOfTheClockInInertia) {
   }
 }
 
-// Without a rig the parameters are over G, which is a factor of all of them.
+// G is a factor of inertia and friction, but not of angles.
 TEST(AddTotalErrors, AddsTheErrorOfTheRigToEachTorque) {
-  Rig rig;
-  rig.gravity_torque = {2, 0.02};
-  const Plan plan = PlanWith("ideal", rig);
+  const Rig rig = Must(ParseRig(R"({"gravity_torque": {"value": 2, "std_dev": 0.02}})", "rig"));
+  SimulationFlags flags = ViscousRun();
+  flags.set = "inertia=0.08,viscous=0.002,release_angle=0.4,release_time=1";
+  const Plan plan =
+      PlanOf(flags, Must(ParseSensorStatement(R"({"kind": "ideal", "clock": 0})", "sensor", "given")), rig);
   const PlanRow& base = BaseOf(plan);
   for (const std::size_t i : {0, 1}) {
     EXPECT_THAT(RelativeTotal(plan, i), DoubleNear(std::hypot(0.01, base.std_errors[i].value() / plan.truth[i]), 1e-6));
@@ -77,20 +85,32 @@ TEST(AddTotalErrors, KeepsTheBudgetOfTheBase) {
   EXPECT_EQ(plan.fit->budget[0].name, "clock");
 }
 
-TEST(AddTotalErrors, AssumesASensor) {
-  Plan plan = Must(MakePlan(ViscousRun()));
-  AddTotalErrors(std::nullopt, std::nullopt, plan);
+TEST(AddTotalErrors, AssumesASensorAndAClock) {
+  const Plan plan = PlanOf(ViscousRun(), std::nullopt);
   EXPECT_EQ(plan.sensor.kind, "angle sensor");
   EXPECT_TRUE(plan.sensor.is_kind_assumed);
+  EXPECT_TRUE(plan.sensor.Of(SensorEffect::kClock).is_assumed);
   EXPECT_GT(BaseOf(plan).total_errors[0].value(), 2 * BaseOf(plan).std_errors[0].value());
+}
+
+// No Cramér-Rao bound is known for means of readings. The error of a mean of 4 is half of that of one reading.
+TEST(AddTotalErrors, UsesTheErrorsOfTheFitWhereNoBoundIsKnown) {
+  SimulationFlags flags = ViscousRun();
+  const std::optional<SensorStatement> exact = Must(ParseSensorStatement(R"({"kind": "ideal", "clock": 0})", "s", "s"));
+  const double single = BaseOf(PlanOf(flags, exact)).total_errors[0].value();
+  flags.resolution = 1e-3;
+  flags.oversample = 4;
+  flags.window_s = 0.01;
+  const Plan plan = PlanOf(flags, exact);
+  EXPECT_FALSE(BaseOf(plan).std_errors[0]);
+  EXPECT_THAT(BaseOf(plan).total_errors[0].value() / single, DoubleNear(0.5, 0.1));
 }
 
 // Noise of a hundred times the swing hides the swing.
 TEST(AddTotalErrors, SaysWhyThereIsNone) {
-  SyntheticOptions run = ViscousRun();
-  run.noise = 40;
-  Plan plan = Must(MakePlan(run));
-  AddTotalErrors(std::nullopt, std::nullopt, plan);
+  SimulationFlags flags = ViscousRun();
+  flags.noise = 40;
+  const Plan plan = PlanOf(flags, std::nullopt);
   EXPECT_FALSE(plan.fit);
   EXPECT_THAT(plan.without_totals, Not(IsEmpty()));
 }
