@@ -110,8 +110,8 @@ std::string TotalText(const Plan& plan, const Units& units, const PlanRow& base,
   const bool has_bound = std::ranges::any_of(base.std_errors, [](const auto& error) { return error.has_value(); });
   const std::string_view noise = plan.noise_of_levels ? "least squares" : has_bound ? "Cramér-Rao bound" : "as fitted";
   return std::string("[[Predicted errors]] (noise: ").append(noise).append(")\n") +
-         AlignedTable({{""}, {"value"}, {"± total"}, {"unit", false, 1}, {"total %"}, {"noise %"}, {"error from"}},
-                      rows, kTextIndent);
+         AlignedTable({{""}, {"value"}, {"± total"}, {"unit", false, 1}, {"%"}, {"noise %"}, {"error from"}}, rows,
+                      kTextIndent);
 }
 
 /// The other recording that makes an error of inertia or friction smallest relative to what it is.

@@ -100,12 +100,12 @@ Plan PlanWithTotals() {
 TEST(PlanText, SaysWhereErrorsComeFromAndWhatMakesThemSmaller) {
   EXPECT_EQ(PlanText(PlanWithTotals(), ExampleRig(), TextExtent::kSummary),
             "[[Predicted errors]] (noise: Cramér-Rao bound)\n"
-            "                   value     ± total    unit       total %  noise %  error from\n"
-            "    inertia        0.0800    ± 0.0005   kg m^2     0.6      0.0013   clock\n"
-            "    viscous        0.003000  ± 0.000030 N m s/rad  1        1        noise\n"
-            "    release_angle  -0.42300  ± 0.00009  rad                          noise\n"
-            "    release_time   1.90000   ± 0.00005  s                            noise\n"
-            "    zero_angle     (0.0      ± 3.0)e-05 rad                          noise\n"
+            "                   value     ± total    unit       %    noise %  error from\n"
+            "    inertia        0.0800    ± 0.0005   kg m^2     0.6  0.0013   clock\n"
+            "    viscous        0.003000  ± 0.000030 N m s/rad  1    1        noise\n"
+            "    release_angle  -0.42300  ± 0.00009  rad                      noise\n"
+            "    release_time   1.90000   ± 0.00005  s                        noise\n"
+            "    zero_angle     (0.0      ± 3.0)e-05 rad                      noise\n"
             "    Improve first: clock; compare the recorder's clock with a watch (--sensor):\n"
             "    inertia ±\u00a00.6\u00a0%, at best ±\u00a00.0013\u00a0%. The recording that helps most: duration\n"
             "    40 s: viscous ±\u00a00.13\u00a0% instead of ±\u00a01\u00a0%. Assumed: clock ±0.3 % for a ceramic\n"
