@@ -65,12 +65,12 @@ std::string ValueText(double value, std::string_view unit) {
   return text + " (" + NumberText(value / kRadFromDeg, kDegreeDigits) + " deg" + std::string(unit.substr(3)) + ")";
 }
 
-/// Where the total error of a parameter comes from.
-std::string SourceOf(const Plan& plan, std::size_t i, const std::optional<Rig>& rig) {
+/// Where the total error of a parameter comes from; of a rig no more, because the table is wide.
+std::string SourceOf(const Plan& plan, std::size_t i) {
   const auto fitted = std::ranges::find(plan.fit->parameters, plan.parameters[i].name,
                                         [](const ParameterEstimate& one) { return one.info.name; });
   if (fitted == plan.fit->parameters.end() || !fitted->std_error) return "";
-  return MainSourcesText(*fitted->std_error, fitted->systematic, rig);
+  return MainSourcesText(*fitted->std_error, fitted->systematic, std::nullopt);
 }
 
 /// Name, value, error and unit of a parameter.
@@ -98,14 +98,14 @@ std::string NoiseText(const Plan& plan, const Units& units, const PlanRow& base)
 }
 
 /// The parameters of the base case, their total errors, and where these come from.
-std::string TotalText(const Plan& plan, const Units& units, const PlanRow& base, const std::optional<Rig>& rig) {
+std::string TotalText(const Plan& plan, const Units& units, const PlanRow& base) {
   std::vector<Cells> rows;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
     const std::optional<double>&total = base.total_errors[i], &noise = base.std_errors[i];
     rows.push_back(ValueCells(plan, units, total, i));
     rows.back().push_back(total && units.IsPercent(i) ? ErrorCell(plan, units, total, i) : "");
     rows.back().push_back(noise && units.IsPercent(i) ? ErrorCell(plan, units, noise, i) : "");
-    rows.back().push_back(total ? SourceOf(plan, i, rig) : "");
+    rows.back().push_back(total ? SourceOf(plan, i) : "");
   }
   const bool has_bound = std::ranges::any_of(base.std_errors, [](const auto& error) { return error.has_value(); });
   const std::string_view noise = plan.noise_of_levels ? "least squares" : has_bound ? "Cramér-Rao bound" : "as fitted";
@@ -257,8 +257,8 @@ std::string ReadingGuide(const Plan& plan, const std::optional<Rig>& rig) {
 std::string PlanText(const Plan& plan, const std::optional<Rig>& rig, TextExtent extent) {
   const Units units(plan, rig);
   const auto base = std::ranges::find_if(plan.rows, &PlanRow::is_base);
-  std::string text = plan.fit ? TotalText(plan, units, *base, rig) + InvestmentText(plan, units, *base)
-                              : NoiseText(plan, units, *base);
+  std::string text =
+      plan.fit ? TotalText(plan, units, *base) + InvestmentText(plan, units, *base) : NoiseText(plan, units, *base);
   if (!plan.without_totals.empty()) text += Prose("Without sensor, clock and rig: " + plan.without_totals + ".");
   const std::string bias = Prose(BiasText(plan, base->std_errors.front().has_value()));
   if (extent == TextExtent::kSummary) {

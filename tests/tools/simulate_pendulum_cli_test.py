@@ -203,7 +203,7 @@ class SimulatePendulumTest(unittest.TestCase):
     def test_plan_predicts_on_stdout_and_makes_no_file(self):
         self.write_rig('{"gravity_torque": 2}')
         with_rig = self.check_made(*NOISY, "--plan", "--details", "--rig", "rig.json", "--sensor", SENSOR)
-        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.000\d+ +kg m\^2 +1 +0\.\d+ +gravity torque\n")
+        self.assertRegex(with_rig, r"\n    inertia +0\.0400\d* +± 0\.000\d+ +kg m\^2 +1 +0\.\d+ +rig\n")
         self.assertRegex(with_rig, r"\n    duration +80 s +\d")
         without = self.check_made("--set", f"inertia=0.02,viscous=0.0005,{START}", *NOISY[2:], "--plan", "--details",
                                   "--sensor", SENSOR)
