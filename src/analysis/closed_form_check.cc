@@ -10,6 +10,7 @@
 
 #include "pendulum/analysis/difference_causes.h"
 #include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/analysis/rig_verdict.h"
 #include "pendulum/base/format.h"
 #include "pendulum/closed_form/locate_turning_points.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
@@ -291,13 +292,11 @@ std::string Percent(double ratio) {
   return NumberText(std::abs(100 * (ratio - 1)), 2) + (ratio > 1 ? " % larger" : " % smaller");
 }
 
-/// Adds rows for the rig's own inertia and for a point mass. Only the fit depends on the clock's error: I is
-/// proportional to the square of the clock's scale.
-void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, std::vector<ClosedFormRow>& rows) {
+/// Adds rows for the rig's own inertia and for a point mass.
+void AddGeometry(const Rig& rig, const FitReport& fit, std::vector<ClosedFormRow>& rows) {
   const ParameterEstimate* fitted = fit.Find(kInertia.name);
   if (fitted == nullptr) return;
   const std::optional<double> fit_error = fitted->fixed ? 0.0 : fitted->std_error;
-  const double clock_error = 2 * fitted->estimate * used.clock_scale_std_dev / used.clock_scale;
   for (const GeometricInertia& inertia : GeometricInertias(rig, fitted->estimate)) {
     ClosedFormRow row{inertia.is_point_mass ? "inertia_point_mass" : "inertia_geometry",
                       inertia.is_point_mass ? "all mass at the end of the rod" : "the rig file",
@@ -313,8 +312,13 @@ void AddGeometry(const Recording& used, const Rig& rig, const FitReport& fit, st
     if (!inertia.std_error || !fit_error) {
       row.why = percent + "; the " + (inertia.std_error ? "fit" : "rig file") + " gives no errors to compare it with";
     } else {
-      SetAgreement(std::hypot(inertia.difference_std_error, *fit_error, clock_error), row);
-      if (row.agrees == false) row.why = percent + ", more than the rig's errors allow";
+      const double of_fit = fitted->std_error ? ErrorBesideRig(*fitted) : 0;
+      const double error = std::hypot(inertia.difference_std_error, of_fit);
+      SetAgreement(error, row);
+      const double of_bob = inertia.is_point_mass ? 0 : PointBobError(rig, inertia.value);
+      const bool may_be_bob = std::abs(inertia.value - fitted->estimate) < kAgrees * std::hypot(error, of_bob);
+      if (row.agrees == false)
+        row.why = percent + ", more than all errors allow" + (may_be_bob ? " if the bob is a point" : "");
     }
     rows.push_back(std::move(row));
   }
@@ -398,7 +402,7 @@ ClosedFormCheck CheckClosedForms(const Recording& used, const ClosedForms& forms
   Checker checker(used, forms, fit, motion, rig ? rig->gravity_torque.value : 1.0);
   if (forms.linear) checker.Add(LinearFormulas(forms, used), check.rows);
   if (forms.decrement) checker.Add(DecrementFormulas(forms, fit.quantity, stop), check.rows);
-  if (rig) AddGeometry(used, *rig, fit, check.rows);
+  if (rig) AddGeometry(*rig, fit, check.rows);
   if (forms.linear) {
     check.overlay = MakeOverlay(used, *forms.linear, fit, motion);
     if (check.overlay.linear.size() > 0) {

@@ -12,25 +12,6 @@
 namespace pendulum {
 namespace {
 
-/// The error of the fitted inertia without the rig's, which the geometry shares.
-double OwnError(const ParameterEstimate& inertia) {
-  const double wider = std::max(inertia.t95.value_or(kNormal95) / kNormal95, 1.0);
-  double variance = std::pow(wider * *inertia.std_error, 2);
-  for (const ErrorSource source : kErrorSources) {
-    if (source != ErrorSource::kRig) variance += std::pow(inertia.systematic.Of(source), 2);
-  }
-  return std::sqrt(variance);
-}
-
-/// The error of a geometry that takes the bob for a point at the end of the rod (MODEL.md eq. (1.3)): a bob's extent,
-/// a clamp or a shaft change the inertia by some percent.
-double GeometryError(const Rig& rig, double geometric) {
-  constexpr double kOfAPoint = 0.05;
-  const bool is_from_masses =
-      rig.source.is_object() && rig.source.contains("bob_mass") && !rig.source.contains("inertia");
-  return is_from_masses ? kOfAPoint * geometric : 0;
-}
-
 std::string ExcessText(double excess) {
   return NumberText(100 * std::abs(excess), 2) + (excess > 0 ? " % larger" : " % smaller");
 }
@@ -62,6 +43,22 @@ void SetTexts(RigVerdict& verdict) {
 
 }  // namespace
 
+double ErrorBesideRig(const ParameterEstimate& inertia) {
+  const double wider = std::max(inertia.t95.value_or(kNormal95) / kNormal95, 1.0);
+  double variance = std::pow(wider * *inertia.std_error, 2);
+  for (const ErrorSource source : kErrorSources) {
+    if (source != ErrorSource::kRig) variance += std::pow(inertia.systematic.Of(source), 2);
+  }
+  return std::sqrt(variance);
+}
+
+double PointBobError(const Rig& rig, double geometric) {
+  constexpr double kOfAPoint = 0.05;
+  const bool is_from_masses =
+      rig.source.is_object() && rig.source.contains("bob_mass") && !rig.source.contains("inertia");
+  return is_from_masses ? kOfAPoint * geometric : 0;
+}
+
 std::string RigVerdict::text() const { return finding + (advice.empty() ? "" : "; " + advice); }
 
 bool RigVerdict::differs() const { return z && std::abs(*z) > kRigDiffers; }
@@ -75,7 +72,8 @@ std::optional<RigVerdict> JudgeInertia(const std::optional<Rig>& rig, const FitR
   if (own == all.end() || !(own->value > 0)) return std::nullopt;
   RigVerdict verdict{own->value, inertia->estimate, inertia->estimate / own->value - 1, {}, "", "", ""};
   if (inertia->std_error) {
-    const double error = std::hypot(own->difference_std_error, OwnError(*inertia), GeometryError(*rig, own->value));
+    const double error =
+        std::hypot(own->difference_std_error, ErrorBesideRig(*inertia), PointBobError(*rig, own->value));
     if (error > 0) verdict.z = (verdict.fitted - verdict.geometric) / error;
   }
   SetTexts(verdict);

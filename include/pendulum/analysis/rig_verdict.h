@@ -30,4 +30,11 @@ inline constexpr double kRigDiffers = 3;
 /// std::nullopt if the fit did not converge, the rig gives no inertia to compare with, or the inertia was fixed.
 std::optional<RigVerdict> JudgeInertia(const std::optional<Rig>& rig, const FitReport& fit);
 
+/// The standard deviation of a fitted inertia by all but the rig's errors, which the rig's own inertia shares.
+double ErrorBesideRig(const ParameterEstimate& inertia);
+
+/// The error of an inertia from masses and lengths, which takes the bob for a point at the end of the rod (MODEL.md eq.
+/// (1.3)): a bob's extent, a clamp or a shaft change it by some percent. 0 if the rig states its inertia.
+double PointBobError(const Rig& rig, double geometric);
+
 }  // namespace pendulum
