@@ -135,12 +135,12 @@ std::string MainSourcesText(double std_error, const SystematicErrors& systematic
   }
   std::ranges::stable_sort(parts, std::ranges::greater(), &Part::first);
   const auto short_name = [](const Part& part) -> std::string {
-    if (!part.second) return "noise";
+    if (!part.second) return std::string(kNoise);
     if (*part.second == ErrorSource::kInconstancy) return "change";
     return *part.second == ErrorSource::kFrictionLaw ? "law" : std::string(ErrorSourceName(*part.second));
   };
   if (parts[0].first < kMost * total) return short_name(parts[0]) + ", " + short_name(parts[1]);
-  return parts[0].second ? SourceWords(*parts[0].second, rig) : "noise";
+  return parts[0].second ? SourceWords(*parts[0].second, rig) : std::string(kNoise);
 }
 
 std::vector<BudgetLine> BudgetOf(const FitReport& fit) {

@@ -67,9 +67,8 @@ std::string ValueText(double value, std::string_view unit) {
 
 /// Where the total error of a parameter comes from; of a rig no more, because the table is wide.
 std::string SourceOf(const Plan& plan, std::size_t i) {
-  const auto fitted = std::ranges::find(plan.fit->parameters, plan.parameters[i].name,
-                                        [](const ParameterEstimate& one) { return one.info.name; });
-  if (fitted == plan.fit->parameters.end() || !fitted->std_error) return "";
+  const ParameterEstimate* const fitted = plan.fit->Find(plan.parameters[i].name);
+  if (fitted == nullptr || !fitted->std_error) return "";
   return MainSourcesText(*fitted->std_error, fitted->systematic, std::nullopt);
 }
 

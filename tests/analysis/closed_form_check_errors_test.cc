@@ -162,11 +162,11 @@ TEST(ClosedFormRow, ComparesWithTheValueAtABound) {
 
 // ---- Inertia of the rig --------------------------------------------------------------------------------------------
 
-/// Simulates a swing of a rod and bob with the inertia of their geometry, and checks the fit.
-CheckedRun CheckRodAndBob(const std::string& description) {
+/// Simulates a swing of a rod and bob with the inertia of their geometry times a factor, and checks the fit.
+CheckedRun CheckRodAndBob(const std::string& description, double factor = 1) {
   const Rig rig = Must(ParseRig(description, "rig"));
   SyntheticOptions run = NoisyTextbookRun("viscous");
-  run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
+  run.parameters[0] = factor * rig.inertia->value / rig.gravity_torque.value;
   return CheckRun(run, "viscous", rig);
 }
 
@@ -193,13 +193,10 @@ TEST(ClosedFormRow, RejectsAPointMassForAHeavyRod) {
 // A bob of 2.5 cm at 0.43 m adds 2/5 r² / l² = 0.14 % of its own inertia; a clamp may add more. 3 % is beyond the
 // errors of masses and length here, but not beyond those of a bob that is taken for a point.
 TEST(ClosedFormRow, SaysThatTheBobMayBeNoPoint) {
-  const Rig rig = Must(ParseRig(
+  const CheckedRun checked = CheckRodAndBob(
       R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.095, "std_dev": 0},
           "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})",
-      "rig"));
-  SyntheticOptions run = NoisyTextbookRun("viscous");
-  run.parameters[0] = 1.03 * rig.inertia->value / rig.gravity_torque.value;
-  const CheckedRun checked = CheckRun(run, "viscous", rig);
+      1.03);
   EXPECT_EQ(checked.Row("inertia_geometry").agrees, false);
   EXPECT_EQ(checked.Row("inertia_geometry").why,
             "2.9 % smaller than the fit's, more than all errors allow if the bob is a point");
@@ -262,13 +259,9 @@ TEST(ClosedFormRow, IncludesTheClocksErrorBesideTheGeometry) {
 
 // RejectsAPointMassForAHeavyRod tests the text for a point mass that is not adequate.
 TEST(ClosedFormRow, ReportsAnAdequatePointMass) {
-  const Rig rig = Must(ParseRig(
+  const CheckedRun checked = CheckRodAndBob(
       R"({"bob_mass": {"value": 0.38, "std_dev": 0}, "rod_mass": {"value": 0.0005, "std_dev": 0},
-          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})",
-      "rig"));
-  SyntheticOptions run = NoisyTextbookRun("viscous");
-  run.parameters[0] = rig.inertia->value / rig.gravity_torque.value;
-  const CheckedRun checked = CheckRun(run, "viscous", rig);
+          "rod_length": {"value": 0.43, "std_dev": 0.001}, "gravity": {"value": 9.81, "std_dev": 0}})");
   EXPECT_THAT(checked.check.summary, HasSubstr("a point mass is an adequate model"));
 }
 
