@@ -2,10 +2,11 @@
 #include "pendulum/analysis/constancy.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "pendulum/analysis/amplitude_trend.h"
@@ -52,14 +53,46 @@ std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
 
 // ---- Halves --------------------------------------------------------------------------------------------------------
 
-void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& second, const FitReport& fit,
-                      Constancy& result) {
+/// One half of the recording: its fit, and what it determines.
+struct Half {
+  PartFit fit;
+  UnboundedEstimate estimate;
+};
+
+/// How much the deviance of a half rises if it has the whole fit's inertia and friction and a start of its own;
+/// std::nullopt if there is no such fit.
+std::optional<double> RiseWithWholeFit(const Parts& parts, double from, double to, const Half& half) {
+  const PartFit held = parts.Fit(from, to, half.estimate.names);
+  if (!held.converged()) return std::nullopt;
+  const NoiseModel noise = parts.NoiseOf(half.fit.fit);
+  double rise = 0;
+  for (Index i = 0; i < half.fit.part.size(); ++i) {
+    const NoiseModel of_sample = noise.ForSample(i);
+    const double value = half.fit.part.value[i];
+    rise += 2 * (of_sample.LikelihoodAt(value, half.fit.fit.fitted[i]).log -
+                 of_sample.LikelihoodAt(value, held.fit.fitted[i]).log);
+  }
+  return rise;
+}
+
+/// How many times too significant the halves' difference is, because the likelihood of a half is no parabola as far as
+/// the whole fit: MODEL.md eq. (9.8), at least 1. So it is where a half hardly shows a parameter.
+double ExcessOfDifference(double statistic, double of_likelihood, const std::array<std::optional<double>, 2>& rises) {
+  constexpr double kLeast = 1;  // a difference that the readings do not see at all
+  if (!rises[0] || !rises[1] || !(of_likelihood > 0)) return 1;
+  const double correlated = statistic / of_likelihood;
+  return std::max(1.0, statistic / std::max(correlated * (*rises[0] + *rises[1]), kLeast));
+}
+
+void SetHalves(const UnboundedEstimate& first, const UnboundedEstimate& second, const FitReport& fit, double excess,
+               Constancy& result) {
   const VectorXd difference = second.value - first.value;
-  const MatrixXd covariance = first.covariance + second.covariance;
+  const MatrixXd covariance = excess * (first.covariance + second.covariance);
+  result.halves.clear();
   for (Index i = 0; i < difference.size(); ++i) {
     const ParameterEstimate& parameter = *fit.Find(first.names[static_cast<std::size_t>(i)]);
     result.halves.push_back({std::string(parameter.info.name), parameter.unit, first.value[i], second.value[i],
-                             std::sqrt(first.covariance(i, i)), std::sqrt(second.covariance(i, i)),
+                             std::sqrt(excess * first.covariance(i, i)), std::sqrt(excess * second.covariance(i, i)),
                              difference[i] / std::sqrt(covariance(i, i))});
   }
   if (difference.size() == 0) return;
@@ -70,22 +103,39 @@ void CompareEstimates(const UnboundedEstimate& first, const UnboundedEstimate& s
   result.halves_p = ChiSquareTail(statistic, result.halves_dof);
 }
 
+bool HalvesDiffer(const Constancy& result) {
+  const auto differs = [](const HalvesRow& row) { return TwoSidedP(row.z) < kNotConstant; };
+  return result.halves_p && (*result.halves_p < kNotConstant || std::ranges::any_of(result.halves, differs));
+}
+
 /// Returns why there is no test; empty if there is one.
 std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, const FitReport& fit,
                           const FitOptions& options, Constancy& result) {
   if (ends.size() - 1 < 2 * kMinHalfSwings) return TooFewHalfSwings(ends, "halves", 2 * kMinHalfSwings);
   const double cut = ends[CutEvenly(ends, 2, parts)[1]];
-  std::vector<UnboundedEstimate> estimates;
-  for (const auto& [name, from, to] :
-       {std::tuple("first", ends.front(), cut), std::tuple("second", NextDoubleAfter(cut), ends.back())}) {
-    const PartFit half = parts.Fit(from, to, {});
-    if (!half.converged()) return std::string("the fit to the ") + name + " half did not converge: " + half.reason;
+  const std::array ranges = {std::pair(ends.front(), cut), std::pair(NextDoubleAfter(cut), ends.back())};
+  std::array<Half, 2> halves;
+  for (std::size_t k = 0; k < halves.size(); ++k) {
+    const std::string which = k == 0 ? "first" : "second";
+    PartFit half = parts.Fit(ranges[k].first, ranges[k].second, {});
+    if (!half.converged()) return "the fit to the " + which + " half did not converge: " + half.reason;
     std::optional<UnboundedEstimate> estimate =
         EstimateUnbounded(half.part, half.fit, parts.NoiseOf(half.fit), options.rig, options.stop);
-    if (!estimate) return std::string("the ") + name + " half does not determine all parameters";
-    estimates.push_back(*std::move(estimate));
+    if (!estimate) return "the " + which + " half does not determine all parameters";
+    halves[k] = {std::move(half), *std::move(estimate)};
   }
-  CompareEstimates(estimates[0], estimates[1], fit, result);
+  const auto& [first, second] = halves;
+  SetHalves(first.estimate, second.estimate, fit, 1, result);
+  if (HalvesDiffer(result)) {
+    const double of_likelihood =
+        SquaredLength(second.estimate.value - first.estimate.value,
+                      first.estimate.likelihood_covariance + second.estimate.likelihood_covariance);
+    std::array<std::optional<double>, 2> rises;
+    for (std::size_t k = 0; k < halves.size(); ++k)
+      rises[k] = RiseWithWholeFit(parts, ranges[k].first, ranges[k].second, halves[k]);
+    const double excess = ExcessOfDifference(result.halves_statistic, of_likelihood, rises);
+    SetHalves(first.estimate, second.estimate, fit, excess, result);
+  }
   if (result.halves.empty()) return "inertia and friction are fixed, so there is nothing to compare";
   return result.halves_p ? "" : "the covariance of the halves' difference cannot be inverted";
 }

@@ -132,6 +132,7 @@ std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const 
   const auto size = static_cast<Index>(values.size());
   estimate.value = Eigen::Map<const VectorXd>(values.data(), size);
   estimate.covariance = covariance.topLeftCorner(size, size);
+  estimate.likelihood_covariance = linear->inverse.topLeftCorner(size, size);
   return estimate;
 }
 

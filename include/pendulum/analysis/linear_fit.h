@@ -65,9 +65,10 @@ NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOpti
 
 /// Inertia and friction estimated from the readings without bounds: K free parameters, in the report's units.
 struct UnboundedEstimate {
-  std::vector<std::string_view> names;  ///< K
-  Eigen::VectorXd value;                ///< K
-  Eigen::MatrixXd covariance;           ///< K x K
+  std::vector<std::string_view> names;    ///< K
+  Eigen::VectorXd value;                  ///< K
+  Eigen::MatrixXd covariance;             ///< K x K
+  Eigen::MatrixXd likelihood_covariance;  ///< K x K, of the likelihood alone, without autocorrelation.
 };
 
 /// One step from the fit to the maximum of the likelihood without bounds. std::nullopt as LinearizeFit.
