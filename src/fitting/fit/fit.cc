@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "fitting/fit/attempt.h"
+#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/alternative_minima.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/make_fit_report.h"
@@ -72,6 +74,32 @@ bool HasLeastReference(const Attempt& attempt, const FitOptions& /*options*/) {
          attempt.solution.parameters[last] <= problem.solve.lower[last];
 }
 
+/// Whether the residuals of an attempt are larger than the noise between neighbouring samples.
+bool LeavesMoreThanNoise(const Attempt& attempt) {
+  constexpr double kRatio = 1.1;
+  const TrajectoryData& data = attempt.problem->data;
+  Recording residuals;
+  residuals.time = data.times();
+  residuals.value = data.values() - attempt.solution.readings;
+  const double rms = residuals.value.norm() / std::sqrt(static_cast<double>(data.time.size()));
+  return rms > kRatio * SuccessiveDifferenceNoise(residuals);
+}
+
+/// Where friction at rest ends the motion of a law with a reference, the likelihood has maxima for each number of half
+/// swings and for several references; a search finds one of them.
+bool SticksWithReference(const Attempt& attempt, const FitOptions& options) {
+  const FitProblem& problem = *attempt.problem;
+  const int holding = problem.solve.holding_parameter;
+  return holding >= 0 && problem.start.energy_balance.reference > 0 &&
+         !problem.solve.fixed[static_cast<std::size_t>(problem.solve.last_friction)] && attempt.solution.usable &&
+         attempt.cost->Trace(attempt.solution.parameters).stop_time < problem.data.time.back() &&
+         options.initial.empty() && LeavesMoreThanNoise(attempt);
+}
+
+bool MayHaveOtherReference(const Attempt& attempt, const FitOptions& options) {
+  return HasLeastReference(attempt, options) || SticksWithReference(attempt, options);
+}
+
 template <StartKind kStart>
 std::vector<FitOptions> WithStart(const Attempt& /*attempt*/, const FitOptions& options) {
   std::vector<FitOptions> alternatives = {options};
@@ -103,7 +131,7 @@ constexpr std::array<Rescue, 4> kRescues = {{
     {"moving_start", MayStartInMotion, WithStart<StartKind::kMoving>, MakeAttempt, IsBetter},
     {"release_start", MayStartHeld, WithStart<StartKind::kRelease>, MakeAttempt, IsBetter},
     {"other_reference_rates", ViolatesOrder, FromOtherReferences, SolveFromOneStart, KeepsOrder},
-    {"other_references", HasLeastReference, FromOtherReferences, SolveFromOneStart, IsBetter},
+    {"other_references", MayHaveOtherReference, FromOtherReferences, SolveFromOneStart, IsBetter},
 }};
 
 /// Applies the rescues in turn. Returns a record of each rescue that was tried.

@@ -134,7 +134,7 @@ double RemainingShiftBesideKink(const SolvedFit& fit, const Optimum& optimum) {
 /// Whether a step remains only because the sum of squares jumps: the sum is nowhere smaller along the step, down to 0.1
 /// standard errors.
 bool IsStoppedByDiscontinuity(const SolvedFit& fit, const Optimum& optimum) {
-  const auto may_jump = [](const FittedRun& run) { return HasDiscontinuities(run.problem); };
+  const auto may_jump = [](const FittedRun& run) { return JumpsAt(run.problem, run.cost, run.solution.parameters); };
   return std::ranges::any_of(fit.runs, may_jump) && RemainingShift(optimum) > kLargestShift &&
          !FindLowerAlongNewtonStep(optimum, fit.solve, fit.cost, fit.solution);
 }

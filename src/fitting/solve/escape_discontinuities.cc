@@ -45,6 +45,11 @@ bool HasDiscontinuities(const FitProblem& problem) {
   return problem.data.quantity == Quantity::kAcceleration && problem.solve.holding_parameter >= 0;
 }
 
+bool JumpsAt(const FitProblem& problem, const TrajectoryCost& cost, const std::vector<double>& parameters) {
+  if (HasDiscontinuities(problem)) return true;
+  return problem.solve.holding_parameter >= 0 && cost.Trace(parameters).stop_time < problem.data.time.back();
+}
+
 std::optional<std::vector<double>> FindLowerAlongNewtonStep(const Optimum& optimum, const SolveOptions& options,
                                                             const LeastSquares& cost, const Solution& solution) {
   double least = 0;
@@ -66,7 +71,7 @@ std::optional<std::vector<double>> FindLowerAlongNewtonStep(const Optimum& optim
 void EscapeDiscontinuities(TrajectoryCost& cost, const FitProblem& problem, const FitOptions& options,
                            Solution& solution) {
   constexpr int kMaxEscapes = 10;
-  if (!HasDiscontinuities(problem) || !solution.usable) return;
+  if (!solution.usable || !JumpsAt(problem, cost, solution.parameters)) return;
   bool has_moved = false;
   for (int escape = 0; escape < kMaxEscapes; ++escape) {
     std::optional<Solution> across = SolveBeyondDiscontinuity(cost, problem, solution);

@@ -81,20 +81,23 @@ std::vector<double> ShiftedAlong(const Eigen::VectorXd& direction, double shift,
   return from;
 }
 
-/// A start beyond the next change in the number of reversals. It lies along the profile of dry friction, on the weaker
-/// (side -1) or stronger (+1) side of a local minimum. Empty if there is none within 20 %.
+/// A start beyond the next change in the number of reversals, on the weaker (side -1) or stronger (+1) side of a local
+/// minimum. It lies along the profile of dry friction; or, because long rests may tie that to the number of reversals,
+/// where dry friction alone differs. Empty if there is none within 20 %.
 std::vector<double> NextLocalMinimumStart(const LeastSquares& cost, const std::vector<double>& from, double side,
                                           const SolveOptions& options) {
   constexpr double kFirstShift = 1e-3;
   constexpr double kLargestShift = 0.2;
   constexpr double kGrowth = 1.15;
   const int k = options.holding_parameter;
-  const Eigen::VectorXd direction = ProfileDirection(cost, from, k, options);
-  if (direction.size() == 0) return {};
-  const auto shifted = [&](double shift) { return ShiftedAlong(direction, shift * from[k], from, options); };
   const int reversals = cost.Reversals(from);
-  for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
-    if (cost.Reversals(shifted(side * shift)) != reversals) return shifted(side * shift * kGrowth);
+  const Eigen::VectorXd alone = Eigen::VectorXd::Unit(static_cast<Eigen::Index>(from.size()), k);
+  for (const Eigen::VectorXd& direction : {ProfileDirection(cost, from, k, options), alone}) {
+    if (direction.size() == 0) continue;
+    const auto shifted = [&](double shift) { return ShiftedAlong(direction, shift * from[k], from, options); };
+    for (double shift = kFirstShift; shift < kLargestShift; shift *= kGrowth) {
+      if (cost.Reversals(shifted(side * shift)) != reversals) return shifted(side * shift * kGrowth);
+    }
   }
   return {};
 }
@@ -102,12 +105,15 @@ std::vector<double> NextLocalMinimumStart(const LeastSquares& cost, const std::v
 /// Continues to the neighbouring local minima of a recording that reaches rest, on both sides, while they are lower.
 Solution DescendToLowerMinima(LeastSquares& cost, const Solution& found, const SolveOptions& options) {
   Solution best = found;
+  // A search for all parameters at once may return to the minimum that it comes from.
+  SolveOptions held = options;
+  held.fixed[options.holding_parameter] = true;
   for (const double side : {-1.0, 1.0}) {
     for (bool better = true; better && cost.traces() < options.max_traces;) {
       Solution trial = best;
       trial.parameters = NextLocalMinimumStart(cost, best.parameters, side, options);
       if (trial.parameters.empty()) break;
-      trial = Continue(cost, trial, options);
+      trial = Continue(cost, Continue(cost, trial, held), options);
       if (!trial.usable) break;
       better = trial.sum < best.sum;
       std::vector<Minimum> others = std::move(best.other_minima);

@@ -279,11 +279,32 @@ Result<bool> LeaveOutPresliding(const FitOptions& options, SwingState& state) {
 
 bool MayBeDisturbed(const SwingState& state) { return state.IsLacking() && !state.presliding; }
 
-/// If a hand disturbed the beginning or the end of a swing, this part does not fit the remaining swing.
+/// The options, with inertia and friction of a fit as start values, unless the user gives them.
+FitOptions StartingFrom(const FitReport& fit, FitOptions options) {
+  const std::size_t physical = PhysicalParameters(fit.model).size();
+  for (std::size_t i = 0; i < physical; ++i) {
+    const ParameterEstimate& parameter = fit.parameters[i];
+    if (!parameter.fixed) options.initial.emplace(parameter.info.name, parameter.estimate);
+  }
+  return options;
+}
+
+/// If a hand disturbed the beginning or the end of a swing, this part does not fit the remaining swing. But the search
+/// may have missed estimates that describe the whole swing, as near a stop, where the likelihood has many maxima; those
+/// of the remaining swing are a better start.
 Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
+  const FreeSwing whole = state.swing;
   LeaveOutDisturbedEnds(state.result.used, options, state.swing);
   if (!state.HasNewWindow()) return false;
-  ASSIGN_OR_RETURN(SwingFit result, FitBetween(std::move(state.result.used), state.swing, options));
+  ASSIGN_OR_RETURN(SwingFit result, FitBetween(state.result.used, state.swing, options));
+  if (result.fit.termination == Termination::kConverged) {
+    Result<SwingFit> again = FitBetween(state.result.used, whole, StartingFrom(result.fit, options));
+    if (again && !LeavesMoreThanNoise(again->fit)) {
+      state.swing = whole;
+      state.result = *std::move(again);
+      return true;
+    }
+  }
   state.result = std::move(result);
   state.was_trimmed = true;
   return true;

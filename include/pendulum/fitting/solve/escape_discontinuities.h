@@ -14,6 +14,10 @@ namespace pendulum {
 /// is not 0.
 bool HasDiscontinuities(const FitProblem& problem);
 
+/// Whether the sum of squares may jump near these parameters: also where the pendulum comes to rest within the
+/// recording, because the number of half swings before may change.
+bool JumpsAt(const FitProblem& problem, const TrajectoryCost& cost, const std::vector<double>& parameters);
+
 /// Searches along the remaining Newton step, within the bounds, for a point with a smaller sum of squares. Tries the
 /// whole step, then half of it and so on down to kLargestShift standard errors. Returns std::nullopt if no point is
 /// lower.

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Fits the law stribeck to recordings in which the pendulum sticks at the end, which alone tells of stiction.
+
+  stiction_study.py BIN_DIR [--count 200] [--rates 0.03,0.05,0.1,0.3,1] [--jobs 2] [--json OUT.json]
+
+A rig with G of 3.708 N m, inertia 0.12, viscous 0.015, coulomb 0.03 and stiction 0.06 (each drawn with a few per cent), released
+at 1.2 rad, an encoder of 4096 counts with noise of 0.15 count, 200 samples a second for 30 s; the user states G and a sensor
+without faults. For each Stribeck rate [rad/s] it prints exit codes, the share of recordings in which the answer is wrong with
+exit code 0, and for each parameter the share with an interval, the coverage of the intervals, and the median error.
+Exit code 1 if fewer than 95 % of the recordings of a rate end with a result, more than 1 % are wrong, or intervals of a
+parameter cover less than 0.9.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import json
+import math
+import os
+import pathlib
+import statistics
+import sys
+import tempfile
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import judging  # noqa: E402, because NumPy reads the environment when it is imported
+from lab import Lab, Recording, record, textbook_lab  # noqa: E402
+from row_summary import finite  # noqa: E402
+
+FIRST_SEED = 800_000
+GRAVITY_TORQUE = 1.8 * 9.81 * 0.21  # N m
+ALWAYS = ("inertia", "viscous", "release_angle", "release_time", "zero_angle")
+FRICTION = ("coulomb", "stiction", "stribeck_rate")
+LEAST_ENDED, MOST_WRONG, LEAST_COVERED = 0.95, 0.01, 0.9
+
+
+def drawn(rate: float, seed: int) -> Lab:
+    """The rig of one recording."""
+    lab = textbook_lab(seed)
+
+    def near(value: float) -> float:
+        return value * lab.rng.uniform(0.95, 1.05)
+
+    lab.set("body", inertia=near(0.12), gravity_torque=GRAVITY_TORQUE, mass=1.8)
+    lab.set_friction(viscous=near(0.015), coulomb=near(0.03), stiction=near(0.06), stribeck_rate=near(rate))
+    lab.set("hand", angle=near(1.2), time=lab.rng.uniform(1.45, 1.55))
+    step = 2 * math.pi / 4096
+    lab.set("sensor", zero=-0.01, sigma=0.15 * step, resolution=step)
+    lab.set("clock", rate=200.0)
+    lab.rig = {"gravity_torque": {"value": GRAVITY_TORQUE, "std_dev": 0}}
+    lab.duration = 30.0
+    return lab
+
+
+def run(tool: pathlib.Path, rate: float, seed: int) -> tuple[Recording, judging.Outcome]:
+    """Simulates and fits one recording."""
+    lab = drawn(rate, seed)
+    recording = record(lab)
+    with tempfile.TemporaryDirectory() as folder:
+        outcome = judging.fit(tool, pathlib.Path(folder), recording, "stribeck", ALWAYS, judging.EXACT_SENSOR, FRICTION)
+    return seed, outcome
+
+
+def of_parameter(name: str, outcomes: list[judging.Outcome]) -> dict:
+    """Intervals of one parameter."""
+    judged = [outcome.judged[name] for outcome in outcomes if name in outcome.judged]
+    if not judged:
+        return {"share": 0.0}
+    return {"share": finite(len(judged) / len(outcomes), 3),
+            "coverage": finite(statistics.fmean(each.is_covered for each in judged), 3),
+            "rms_z": finite(math.sqrt(statistics.fmean(min(each.z**2, 1e4) for each in judged)), 3),
+            "relative_error": finite(statistics.median(each.relative_error for each in judged), 3)}
+
+
+def summary(fits: list[tuple[int, judging.Outcome]]) -> dict:
+    """What the recordings of one rate say together."""
+    ended = [outcome for _, outcome in fits if outcome.exit_code == 0]
+    return {"recordings": len(fits), "exit_codes": dict(collections.Counter(each.exit_code for _, each in fits)),
+            "ended": finite(len(ended) / len(fits), 3),
+            "wrong": [{"seed": seed, "z": {name: finite(each.z, 3) for name, each in outcome.judged.items()}}
+                      for seed, outcome in fits if outcome.is_wrong],
+            "without": [{"seed": seed, "message": outcome.message} for seed, outcome in fits if outcome.exit_code],
+            "doubted": sum(outcome.is_doubted for outcome in ended),
+            "codes": dict(collections.Counter(code for outcome in ended for code in (*outcome.codes, *outcome.causes))),
+            "parameters": {name: of_parameter(name, ended) for name in (*ALWAYS, *FRICTION)}}
+
+
+def text(rate: float, found: dict) -> str:
+    """The summary for the terminal."""
+    lines = [f"{rate} rad/s: {found['recordings']} recordings, exit codes {found['exit_codes']}, wrong "
+             f"{len(found['wrong'])}, doubted {found['doubted']}, {found['codes']}"]
+    lines += [f"  {name:<14} {each}" for name, each in found["parameters"].items()]
+    lines += [f"  wrong: {each}" for each in found["wrong"][:6]] + [f"  {each}" for each in found["without"][:6]]
+    return "\n".join(lines)
+
+
+def fails(found: dict) -> bool:
+    """Whether the recordings of a rate miss what they must show."""
+    return (found["ended"] < LEAST_ENDED or len(found["wrong"]) > MOST_WRONG * found["recordings"] or
+            any(each.get("coverage", 1) < LEAST_COVERED for each in found["parameters"].values()))
+
+
+def main() -> int:
+    """Runs the study, prints it and returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin_dir", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=200, help="recordings of each rate")
+    parser.add_argument("--rates", default="0.03,0.05,0.1,0.3,1")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--json", type=pathlib.Path)
+    arguments = parser.parse_args()
+    tool = arguments.bin_dir.resolve() / "fit_pendulum"
+    if not tool.exists():
+        parser.error(f"there is no {tool}")
+    found = {}
+    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
+        for rate in map(float, arguments.rates.split(",")):
+            work = [pool.submit(run, tool, rate, FIRST_SEED + index) for index in range(arguments.count)]
+            found[rate] = summary([future.result() for future in work])
+            print(text(rate, found[rate]), flush=True)
+    if arguments.json:
+        arguments.json.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    return 1 if any(map(fails, found.values())) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
