@@ -96,11 +96,18 @@ std::optional<Interval> TotalIntervalOf(const Estimated& quantity) {
   return lower && upper ? std::optional(Interval{*lower, *upper}) : std::nullopt;
 }
 
-/// Whether the 95 % interval is much wider than ± 2 errors: a parameter at its bound, or few independent samples.
-bool HasWideInterval(const DerivedQuantity& quantity) {
+/// Whether an interval about an estimate says more than ± 2 errors: it is much wider, because there are few independent
+/// samples, or one side is, because a parameter is at its bound.
+bool IsTelling(double lower, double estimate, double upper, double total_error) {
+  constexpr double kLopsided = 3;
+  const auto [shorter, longer] = std::minmax({estimate - lower, upper - estimate});
+  return longer > kMuchWider * kNormal95 * total_error || longer > kLopsided * shorter;
+}
+
+bool HasTellingInterval(const DerivedQuantity& quantity) {
   if (!quantity.std_error || !quantity.lower95 || !quantity.upper95) return false;
-  const double reach = std::max(quantity.estimate - *quantity.lower95, *quantity.upper95 - quantity.estimate);
-  return reach > kMuchWider * kNormal95 * *TotalStdError(quantity.std_error, quantity.systematic);
+  return IsTelling(*quantity.lower95, quantity.estimate, *quantity.upper95,
+                   *TotalStdError(quantity.std_error, quantity.systematic));
 }
 
 /// The total 95 % interval in the place of the value. The quantity has one.
@@ -119,11 +126,11 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
     if (found == fit.derived.end()) continue;
     const auto total = TotalStdError(found->std_error, found->systematic);
     const bool is_open = found->lower95.has_value() != found->upper95.has_value();
-    const bool is_wide = HasWideInterval(*found);
-    const bool contains_0 = is_wide && TotalIntervalOf(*found)->lower <= 0;
+    const bool is_telling = HasTellingInterval(*found);
+    const bool contains_0 = is_telling && TotalIntervalOf(*found)->lower <= 0;
     if (is_open || contains_0 || (total && *total >= std::abs(found->estimate))) continue;  // its divisor may be 0
-    derived.push_back(is_wide ? IntervalOf(*found, std::string(word))
-                              : Quantity(std::string(word), "", found->estimate, total, found->unit));
+    derived.push_back(is_telling ? IntervalOf(*found, std::string(word))
+                                 : Quantity(std::string(word), "", found->estimate, total, found->unit));
   }
   return derived;
 }
@@ -135,15 +142,13 @@ bool IsPhysical(const FitReport& fit, const ParameterEstimate& parameter) {
   return std::ranges::find(physical, parameter.info.name, &ParameterInfo::name) != physical.end();
 }
 
-/// "coulomb 0.0016 to 0.0201" if the total 95 % interval is much wider than ± 2 total errors, which few independent
-/// samples or a likelihood that is no parabola make; otherwise empty.
-std::string WideIntervalText(const ParameterEstimate& parameter) {
+/// "coulomb 0.0016 to 0.0201" if the total 95 % interval says more than ± 2 total errors; otherwise empty.
+std::string TellingIntervalText(const ParameterEstimate& parameter) {
   const auto total = TotalStdError(parameter.std_error, parameter.systematic);
   const auto interval = TotalIntervalOf(parameter);
   if (!total || !interval) return "";
   const auto [lower, upper] = *interval;
-  const double reach = std::max(parameter.estimate - lower, upper - parameter.estimate);
-  if (!(reach > kMuchWider * kNormal95 * *total)) return "";
+  if (!IsTelling(lower, parameter.estimate, upper, *total)) return "";
   const Conversion shown = Degrees(parameter.unit).value_or(Conversion{parameter.unit});
   const std::string unit = ShownUnit(std::string(shown.unit));
   const Rounding rounding = PdgRounding(shown.factor * parameter.estimate, shown.factor * *total);
@@ -188,7 +193,7 @@ std::string RemarksText(const FitReport& fit) {
                known->verdict == Identifiability::Verdict::kWeakly) {
       AddListed(name, weak);
     }
-    AddListed(WideIntervalText(parameter), wide);
+    AddListed(TellingIntervalText(parameter), wide);
   }
   std::string text = zero.empty() ? "" : "Not distinguishable from 0: " + zero + ". ";
   if (!weak.empty()) text += "Weakly identifiable: " + weak + ". ";

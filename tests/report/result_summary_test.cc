@@ -170,6 +170,17 @@ TEST(SummarizeFit, GivesIntervalsThatAreMuchWiderThanTwoErrors) {
   EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("Quote as a 95 % interval: viscous 0.0010 to 0.0080"));
 }
 
+// A bound of another parameter lets an estimate move to one side only.
+TEST(SummarizeFit, GivesIntervalsWithOneMuchLongerSide) {
+  Identification identification = ExampleIdentification();
+  ParameterEstimate& viscous = identification.fits[0].parameters[1];
+  viscous.estimate = 0.003;
+  viscous.std_error = 0.0005;
+  viscous.lower95 = 0.002;
+  viscous.upper95 = 0.0031;
+  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("Quote as a 95 % interval: viscous 0.0020 to 0.0031"));
+}
+
 TEST(SummarizeFit, NamesTermsThatMayBeZero) {
   Identification identification = ExampleIdentification();
   ParameterEstimate& viscous = identification.fits[0].parameters[1];

@@ -110,6 +110,21 @@ void SetAutocorrelations(FitState& state) {
   }
 }
 
+/// How many times larger the errors of the free parameters are in a fit without bounds: F, or ones if it is not
+/// determined.
+Eigen::VectorXd WideningWithoutBounds(const Optimum& own) {
+  Eigen::VectorXd widening = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(own.free.size()));
+  if (own.at_bound.empty()) return widening;
+  const Optimum unbounded = WithoutBounds(own, own.information);
+  if (!unbounded.inverse.identifiable) return widening;
+  for (Eigen::Index row = 0; row < widening.size(); ++row) {
+    const auto place = std::ranges::find(unbounded.free, own.free[static_cast<std::size_t>(row)]);
+    const auto k = place - unbounded.free.begin();
+    widening[row] = std::sqrt(unbounded.inverse.matrix(k, k) / own.inverse.matrix(row, row));
+  }
+  return widening;
+}
+
 /// Sets the intervals by the method of the options. Profiles and bootstrap fits need a likelihood, which posteriors are
 /// not.
 void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, FitState& state) {
@@ -121,10 +136,34 @@ void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, F
   std::vector<FitReport*> reports;
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     reports.push_back(&state.descriptions[k].report);
-    SetCovarianceIntervals(fit.runs[k], state.own[k], own_errors[k], *reports.back());
+    Errors errors_of_run = own_errors[k];
+    const Eigen::VectorXd widening = WideningWithoutBounds(state.own[k]);
+    errors_of_run.covariance = widening.asDiagonal() * errors_of_run.covariance * widening.asDiagonal();
+    SetCovarianceIntervals(fit.runs[k], state.own[k], errors_of_run, *reports.back());
   }
   const bool is_likelihood = state.separate == nullptr || !state.separate->are_posteriors;
   if (is_likelihood && NeedsProfiles(fit, state.optimum, errors)) SetProfileIntervals(fit, state.optimum, reports);
+}
+
+/// The longer side of a parameter's interval over t; std::nullopt if an end is missing.
+std::optional<double> ErrorOfInterval(const ParameterEstimate& parameter) {
+  if (!parameter.lower95 || !parameter.upper95) return std::nullopt;
+  return std::max(parameter.estimate - *parameter.lower95, *parameter.upper95 - parameter.estimate) / *parameter.t95;
+}
+
+/// Enlarges the errors of one recording where a parameter is at its bound: it may be anywhere inside, and the others
+/// with it. Their errors are those of their intervals or, without an end, of a fit without bounds.
+void WidenByBounds(const Optimum& own, Errors& errors, FitReport& report) {
+  if (own.at_bound.empty()) return;
+  Eigen::VectorXd widening = WideningWithoutBounds(own);
+  for (std::size_t row = 0; row < own.free.size(); ++row) {
+    ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(own.free[row])];
+    const std::optional<double> error = ErrorOfInterval(parameter);
+    double& factor = widening[static_cast<Eigen::Index>(row)];
+    if (error) factor = std::max(*error / *parameter.std_error, 1.0);
+    *parameter.std_error *= factor;
+  }
+  errors.covariance = widening.asDiagonal() * errors.covariance * widening.asDiagonal();
 }
 
 /// Whether the readings show how friction falls from its static to its sliding value.
@@ -218,6 +257,7 @@ void SetErrors(const Correction& corrected, FitState& state) {
   if (!sampled) SetIntervals(own, errors, state);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     FitReport& report = state.descriptions[k].report;
+    if (!sampled) WidenByBounds(state.own[k], own[k], report);
     SetDerived(fit.runs[k], own_optimum(k), own[k], own_systematic[k], report);
     // With the errors that are withdrawn below: a parameter without an error would count as identifiable.
     SetIdentifiability(fit.runs[k].problem, state.own[k], report);

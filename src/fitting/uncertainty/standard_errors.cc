@@ -183,18 +183,10 @@ std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation
   return "inverse observed information of the parameters and sigma, readings assumed independent";
 }
 
-/// Each parameter has its own number of effective samples. Autocorrelation that inflates the variance of a mean may not
-/// affect a swing's phase.
-Eigen::VectorXd StudentT95(const Eigen::MatrixXd& covariance, const Optimum& optimum, const Eigen::VectorXd& samples,
-                           bool white) {
-  const auto free = static_cast<double>(optimum.free.size());
-  Eigen::VectorXd t95(covariance.rows());
-  for (Index i = 0; i < t95.size(); ++i) {
-    const double share = white ? 1.0 : std::min(optimum.inverse.matrix(i, i) / covariance(i, i), 1.0);
-    const double freedom = std::isfinite(share) ? std::max(share * samples[i] - free, 1.0) : 1.0;
-    t95[i] = StudentQuantile(0.975, freedom);
-  }
-  return t95;
+/// samples: F, effective ones of the recordings that tell of each parameter.
+Eigen::VectorXd StudentT95(const Eigen::VectorXd& samples) {
+  const auto free = static_cast<double>(samples.size());
+  return samples.unaryExpr([&](double count) { return StudentQuantile(0.975, std::max(count - free, 1.0)); });
 }
 
 /// Standard error of σ, which is estimated together with the parameters, from the blocks of the inverse of the joint
@@ -240,8 +232,8 @@ Errors ComputeErrors(const SolvedFit& fit, const Optimum& optimum) {
   Eigen::VectorXd samples = Eigen::VectorXd::Zero(static_cast<Index>(optimum.free.size()));  // per parameter
   for (const FittedRun& run : runs) {
     const std::vector<Index> rows = RowsAmong(run.at, optimum.free, OwnIndices(run.at, optimum.free));
-    samples(rows).array() += run.samples();
     errors.runs.push_back(NoiseErrorsOf(run));
+    samples(rows).array() += errors.runs.back().effective_samples;
   }
   errors.covariance = optimum.inverse.matrix;
   const bool simple = std::ranges::all_of(runs, IsWhiteGaussian) || optimum.free.empty();
@@ -265,7 +257,7 @@ Errors ComputeErrors(const SolvedFit& fit, const Optimum& optimum) {
       own.method =
           "inverse information, residuals assumed independent, because their autocorrelation gives no valid covariance";
   }
-  errors.t95 = StudentT95(errors.covariance, optimum, samples, std::ranges::all_of(runs, IsWhite));
+  errors.t95 = StudentT95(samples);
   return errors;
 }
 

@@ -137,6 +137,40 @@ TEST(MakeFitReport, TheIntervalAtABoundEndsAtTheChiSquareRise) {
   EXPECT_GT(at_bound, 3);
 }
 
+// The error of viscous friction if dry friction were exactly 0 is a third of what its interval says.
+TEST(MakeFitReport, ErrorsAllowForAParameterAtItsBound) {
+  int at_bound = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const Recording recording = Must(SimulateRecording(NoisyRun("viscous", seed)));
+    const FitReport report = Fit(recording, ModelOptions("coulomb"));
+    if (!report.Find("coulomb")->at_bound) continue;
+    ++at_bound;
+    const ParameterEstimate& viscous = *report.Find("viscous");
+    EXPECT_NEAR(*viscous.t95 * *viscous.std_error, viscous.estimate - *viscous.lower95, 1e-12);
+    const FitReport without = Fit(recording, ModelOptions("viscous"));
+    EXPECT_GT(*viscous.std_error, 2 * *without.Find("viscous")->std_error);
+    const auto decay_of = [](const FitReport& fit) {
+      return *std::ranges::find(fit.derived, "decay_time", &DerivedQuantity::name);
+    };
+    EXPECT_NEAR(*decay_of(report).std_error / decay_of(report).estimate, *viscous.std_error / viscous.estimate, 1e-3);
+  }
+  EXPECT_GT(at_bound, 3);
+}
+
+// Where the profile has no end, the error is that of a fit without bounds.
+TEST(MakeFitReport, ErrorsBesideABoundNeedNoInterval) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Recording recording = Must(SimulateRecording(NoisyRun("viscous", seed)));
+    FitOptions options = ModelOptions("coulomb");
+    options.interval = IntervalMethod::kCovariance;
+    const FitReport report = Fit(recording, options);
+    if (!report.Find("coulomb")->at_bound) continue;
+    const FitReport without = Fit(recording, ModelOptions("viscous"));
+    EXPECT_GT(*report.Find("viscous")->std_error, 2 * *without.Find("viscous")->std_error) << "seed " << seed;
+  }
+}
+
 // ---- Not identifiable ----------------------------------------------------------------------------------------------
 
 /// A cost whose data depend on the parameters only through `seen` * p, as in an experiment with too little information.
