@@ -14,6 +14,7 @@
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
+#include "pendulum/fitting/residuals/swing_misfit.h"
 
 namespace pendulum {
 namespace {
@@ -42,7 +43,10 @@ void WarnOfCorrelation(const Recording& recording, const FitReport& report, cons
   const double noise = SuccessiveDifferenceNoise(residuals);
   const double rms = std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
   const double ratio = rms / noise;
-  if (!(ratio > kRatio)) {
+  const bool is_misfit = ratio > kRatio && (report.termination != Termination::kConverged ||
+                                            IsSwingMisfit(recording.time, report.fitted, z,
+                                                          report.noise.autocorrelation.SquaredInflation()));
+  if (!is_misfit) {
     const bool is_modelled = report.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite &&
                              report.termination == Termination::kConverged;
     warnings.push_back(

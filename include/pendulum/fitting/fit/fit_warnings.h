@@ -15,7 +15,8 @@ namespace pendulum {
 /// Warnings about a fit, most with a recommended action. The last four are only for a converged fit:
 ///
 /// saturated: readings at an end of the sensor's range
-/// lack_of_fit: autocorrelated residuals that are larger than the noise between neighbouring samples
+/// lack_of_fit: autocorrelated residuals that are larger than the noise between neighbouring samples and follow the
+/// swing (IsSwingMisfit)
 /// correlated_residuals: other autocorrelated residuals
 /// zero_drift: the zero of the sensor drifts
 /// noise_below_resolution: noise below half the resolution is treated as Gaussian
