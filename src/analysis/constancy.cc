@@ -76,7 +76,7 @@ std::optional<double> RiseWithWholeFit(const Parts& parts, double from, double t
 }
 
 /// How many times too significant the halves' difference is, because the likelihood of a half is no parabola as far as
-/// the whole fit: MODEL.md eq. (9.8), at least 1. So it is where a half hardly shows a parameter.
+/// the whole fit: MODEL.md eq. (9.8), at least 1. This happens where a half hardly shows a parameter.
 double ExcessOfDifference(double statistic, double of_likelihood, const std::array<std::optional<double>, 2>& rises) {
   constexpr double kLeast = 1;  // a difference that the readings do not see at all
   if (!rises[0] || !rises[1] || !(of_likelihood > 0)) return 1;
@@ -103,6 +103,11 @@ void SetHalves(const UnboundedEstimate& first, const UnboundedEstimate& second, 
   result.halves_p = ChiSquareTail(statistic, result.halves_dof);
 }
 
+/// Whether a parameter is at its bound, so that the deviance does not tell how far beyond the readings would have it.
+bool IsAtBound(const FitReport& fit) {
+  return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& parameter) { return parameter.at_bound; });
+}
+
 bool HalvesDiffer(const Constancy& result) {
   const auto differs = [](const HalvesRow& row) { return TwoSidedP(row.z) < kNotConstant; };
   return result.halves_p && (*result.halves_p < kNotConstant || std::ranges::any_of(result.halves, differs));
@@ -126,7 +131,7 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
   }
   const auto& [first, second] = halves;
   SetHalves(first.estimate, second.estimate, fit, 1, result);
-  if (HalvesDiffer(result)) {
+  if (HalvesDiffer(result) && !IsAtBound(first.fit.fit) && !IsAtBound(second.fit.fit)) {
     const double of_likelihood =
         SquaredLength(second.estimate.value - first.estimate.value,
                       first.estimate.likelihood_covariance + second.estimate.likelihood_covariance);

@@ -135,6 +135,7 @@ void QuestionUnit(const Recording& used, double half_period, const FitReport* fi
   const bool is_rate = used.unit == "deg/s";
   const bool is_spring = fit != nullptr && fit->model.gravity.is_linear();
   if (is_spring || (used.unit != "deg" && !is_rate)) return;
+  if (is_rate && !(half_period > 0)) return;  // the ends of the window were chosen, and no half swings were measured
   const double range = 0.5 * (used.value.maxCoeff() - used.value.minCoeff());
   const double amplitude = is_rate ? range * half_period / kPi : range;
   if (amplitude > kMayBeRadians) return;

@@ -112,9 +112,10 @@ bool HasTellingInterval(const DerivedQuantity& quantity) {
 
 /// The total 95 % interval in the place of the value. The quantity has one.
 SummaryQuantity IntervalOf(const DerivedQuantity& quantity, std::string name) {
-  constexpr int kDigits = 3;
+  constexpr double kErrors = 4;  // in a 95 % interval
   const Interval interval = TotalIntervalOf(quantity).value();
-  std::string value = SignificantText(interval.lower, kDigits) + " to " + SignificantText(interval.upper, kDigits);
+  const Rounding rounding = PdgRounding(quantity.estimate, (interval.upper - interval.lower) / kErrors);
+  std::string value = RoundedText(interval.lower, rounding) + " to " + RoundedText(interval.upper, rounding);
   return {
       std::move(name) + " (95" + std::string(kNoBreak) + "%)", "", std::move(value), "", ShownUnit(quantity.unit), ""};
 }

@@ -2,6 +2,9 @@
 #include "pendulum/identify/identify.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -205,6 +208,27 @@ TEST(IdentifyEach, UsesSmallAngleFormulasForAnUnknownUnit) {
   EXPECT_EQ(runs[0]->recordings.front().warnings.back().code, "uncalibrated");
   EXPECT_THAT(MessageText(runs[0]->recordings.front().warnings.back()),
               StartsWith("the readings are in counts, not in a unit of angle"));
+}
+
+// A window between two chosen ends has no measured half swing, from which the size of a gyro's swing would follow.
+TEST(IdentifyEach, QuestionsTheUnitOfSmallSwingsOnly) {
+  SyntheticOptions run = NoisyRun();
+  run.quantity = Quantity::kRate;
+  run.zero = 0;
+  IdentifyOptions options = OptionsFor({"coulomb"});
+  for (const double to : {std::numeric_limits<double>::quiet_NaN(), 9.0}) {
+    options.swing.from = std::isnan(to) ? to : 0.0;
+    options.swing.to = to;
+    for (const double scale : {1.0, 0.01}) {
+      Recording recording = Must(SimulateRecording(run));
+      recording.value *= scale;
+      recording.unit = "deg/s";
+      const auto fitted = IdentifyEach(options, Must(PrepareRecording(std::move(recording), options, std::nullopt)));
+      ASSERT_TRUE(fitted.at(0)) << fitted[0].error().message();
+      const bool is_questioned = HasWarning(fitted[0]->recordings.front().warnings, "unit_questioned");
+      EXPECT_EQ(is_questioned, scale < 1 && std::isnan(to)) << scale << " to " << to;
+    }
+  }
 }
 
 TEST(IdentifyEach, FitsEachChosenRelease) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -13,7 +12,6 @@
 #include <vector>
 
 #include "fitting/fit/attempt.h"
-#include "pendulum/closed_form/turning_points.h"
 #include "pendulum/fitting/fit/alternative_minima.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
 #include "pendulum/fitting/fit/make_fit_report.h"
@@ -75,14 +73,10 @@ bool HasLeastReference(const Attempt& attempt, const FitOptions& /*options*/) {
 }
 
 /// Whether the residuals of an attempt are larger than the noise between neighbouring samples.
-bool LeavesMoreThanNoise(const Attempt& attempt) {
+bool ExceedsNeighbourNoise(const Attempt& attempt) {
   constexpr double kRatio = 1.1;
   const TrajectoryData& data = attempt.problem->data;
-  Recording residuals;
-  residuals.time = data.times();
-  residuals.value = data.values() - attempt.solution.readings;
-  const double rms = residuals.value.norm() / std::sqrt(static_cast<double>(data.time.size()));
-  return rms > kRatio * SuccessiveDifferenceNoise(residuals);
+  return RatioToNeighbourNoise(data.times(), data.values() - attempt.solution.readings) > kRatio;
 }
 
 /// Where friction at rest ends the motion of a law with a reference, the likelihood has maxima for each number of half
@@ -93,7 +87,7 @@ bool SticksWithReference(const Attempt& attempt, const FitOptions& options) {
   return holding >= 0 && problem.start.energy_balance.reference > 0 &&
          !problem.solve.fixed[static_cast<std::size_t>(problem.solve.last_friction)] && attempt.solution.usable &&
          attempt.cost->Trace(attempt.solution.parameters).stop_time < problem.data.time.back() &&
-         options.initial.empty() && LeavesMoreThanNoise(attempt);
+         options.initial.empty() && ExceedsNeighbourNoise(attempt);
 }
 
 bool MayHaveOtherReference(const Attempt& attempt, const FitOptions& options) {

@@ -135,7 +135,7 @@ double RemainingShiftBesideKink(const SolvedFit& fit, const Optimum& optimum) {
 /// standard errors.
 bool IsStoppedByDiscontinuity(const SolvedFit& fit, const Optimum& optimum) {
   const auto may_jump = [](const FittedRun& run) { return JumpsAt(run.problem, run.cost, run.solution.parameters); };
-  return std::ranges::any_of(fit.runs, may_jump) && RemainingShift(optimum) > kLargestShift &&
+  return RemainingShift(optimum) > kLargestShift && std::ranges::any_of(fit.runs, may_jump) &&
          !FindLowerAlongNewtonStep(optimum, fit.solve, fit.cost, fit.solution);
 }
 

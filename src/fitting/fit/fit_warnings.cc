@@ -33,19 +33,22 @@ std::string MisfitSize(const Recording& recording, double misfit) {
   return NumberText(misfit, 2) + " " + recording.value_unit();
 }
 
+/// Whether residuals that are more than white noise follow the swing. An acceleration along the rod oscillates twice in
+/// a period, and a fit without a minimum has no noise.
+bool MayBeMisfit(const Recording& recording, const FitReport& report, const Eigen::VectorXd& z) {
+  if (report.termination != Termination::kConverged || recording.quantity == Quantity::kAcceleration) return true;
+  const Autocorrelation& known = report.noise.autocorrelation;
+  const bool is_known = known.kind != Autocorrelation::Kind::kWhite;
+  return IsSwingMisfit(recording.time, report.fitted, z,
+                       is_known ? std::optional(known.SquaredInflation()) : std::nullopt);
+}
+
 void WarnOfCorrelation(const Recording& recording, const FitReport& report, const Eigen::VectorXd& z,
                        std::vector<Warning>& warnings) {
   constexpr double kRatio = 1.3;
   constexpr double kLargestShown = 99;
-  Recording residuals;
-  residuals.time = recording.time;
-  residuals.value = z;
-  const double noise = SuccessiveDifferenceNoise(residuals);
-  const double rms = std::sqrt(z.squaredNorm() / static_cast<double>(z.size()));
-  const double ratio = rms / noise;
-  const bool is_misfit = ratio > kRatio && (report.termination != Termination::kConverged ||
-                                            IsSwingMisfit(recording.time, report.fitted, z,
-                                                          report.noise.autocorrelation.SquaredInflation()));
+  const double ratio = RatioToNeighbourNoise(recording.time, z);
+  const bool is_misfit = ratio > kRatio && MayBeMisfit(recording, report, z);
   if (!is_misfit) {
     const bool is_modelled = report.noise.autocorrelation.kind != Autocorrelation::Kind::kWhite &&
                              report.termination == Termination::kConverged;
@@ -318,6 +321,14 @@ Warning SuspicionWarning(const Suspicion& suspicion, const std::string& law) {
 }
 
 }  // namespace
+
+double RatioToNeighbourNoise(const Eigen::VectorXd& time, const Eigen::VectorXd& residual) {
+  Recording residuals;
+  residuals.time = time;
+  residuals.value = residual;
+  const double rms = std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
+  return rms / SuccessiveDifferenceNoise(residuals);
+}
 
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
                                  const Description& described) {

@@ -110,19 +110,25 @@ void SetAutocorrelations(FitState& state) {
   }
 }
 
-/// How many times larger the errors of the free parameters are in a fit without bounds: F, or ones if it is not
-/// determined.
-Eigen::VectorXd WideningWithoutBounds(const Optimum& own) {
-  Eigen::VectorXd widening = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(own.free.size()));
-  if (own.at_bound.empty()) return widening;
-  const Optimum unbounded = WithoutBounds(own, own.information);
+/// How many times larger the errors of all F free parameters are in a fit without bounds: at least 1, and 1 if such a
+/// fit is not determined.
+Eigen::VectorXd WideningWithoutBounds(const Optimum& optimum) {
+  Eigen::VectorXd widening = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(optimum.free.size()));
+  if (optimum.at_bound.empty()) return widening;
+  const Optimum unbounded = WithoutBounds(optimum, optimum.information);
   if (!unbounded.inverse.identifiable) return widening;
   for (Eigen::Index row = 0; row < widening.size(); ++row) {
-    const auto place = std::ranges::find(unbounded.free, own.free[static_cast<std::size_t>(row)]);
+    const auto place = std::ranges::find(unbounded.free, optimum.free[static_cast<std::size_t>(row)]);
     const auto k = place - unbounded.free.begin();
-    widening[row] = std::sqrt(unbounded.inverse.matrix(k, k) / own.inverse.matrix(row, row));
+    widening[row] = std::sqrt(std::max(unbounded.inverse.matrix(k, k) / optimum.inverse.matrix(row, row), 1.0));
   }
   return widening;
+}
+
+/// The elements of WideningWithoutBounds for the free parameters of recording k.
+Eigen::VectorXd OwnWidening(const FitState& state, std::size_t k) {
+  const Eigen::VectorXd widening = WideningWithoutBounds(state.optimum);
+  return widening(RowsAmong(state.fit.runs[k].at, state.optimum.free, state.own[k].free));
 }
 
 /// Sets the intervals by the method of the options. Profiles and bootstrap fits need a likelihood, which posteriors are
@@ -137,7 +143,7 @@ void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, F
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     reports.push_back(&state.descriptions[k].report);
     Errors errors_of_run = own_errors[k];
-    const Eigen::VectorXd widening = WideningWithoutBounds(state.own[k]);
+    const Eigen::VectorXd widening = OwnWidening(state, k);
     errors_of_run.covariance = widening.asDiagonal() * errors_of_run.covariance * widening.asDiagonal();
     SetCovarianceIntervals(fit.runs[k], state.own[k], errors_of_run, *reports.back());
   }
@@ -151,11 +157,13 @@ std::optional<double> ErrorOfInterval(const ParameterEstimate& parameter) {
   return std::max(parameter.estimate - *parameter.lower95, *parameter.upper95 - parameter.estimate) / *parameter.t95;
 }
 
-/// Enlarges the errors of one recording where a parameter is at its bound: it may be anywhere inside, and the others
-/// with it. Their errors are those of their intervals or, without an end, of a fit without bounds.
-void WidenByBounds(const Optimum& own, Errors& errors, FitReport& report) {
-  if (own.at_bound.empty()) return;
-  Eigen::VectorXd widening = WideningWithoutBounds(own);
+/// Enlarges the errors of recording k where a parameter is at its bound: it may be anywhere inside, and the others with
+/// it. Their errors are those of their intervals or, without an end, of a fit without bounds.
+void WidenByBounds(std::size_t k, Errors& errors, FitState& state) {
+  if (state.optimum.at_bound.empty()) return;
+  const Optimum& own = state.own[k];
+  FitReport& report = state.descriptions[k].report;
+  Eigen::VectorXd widening = OwnWidening(state, k);
   for (std::size_t row = 0; row < own.free.size(); ++row) {
     ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(own.free[row])];
     const std::optional<double> error = ErrorOfInterval(parameter);
@@ -257,7 +265,7 @@ void SetErrors(const Correction& corrected, FitState& state) {
   if (!sampled) SetIntervals(own, errors, state);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     FitReport& report = state.descriptions[k].report;
-    if (!sampled) WidenByBounds(state.own[k], own[k], report);
+    if (!sampled) WidenByBounds(k, own[k], state);
     SetDerived(fit.runs[k], own_optimum(k), own[k], own_systematic[k], report);
     // With the errors that are withdrawn below: a parameter without an error would count as identifiable.
     SetIdentifiability(fit.runs[k].problem, state.own[k], report);

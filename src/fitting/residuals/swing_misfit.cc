@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "pendulum/base/distributions.h"
@@ -15,9 +16,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kLevel = 1e-3;  // of each test
-constexpr std::size_t kMinPeriods = 6;
-constexpr double kMinSamples = 10;  // in a period
+constexpr double kLevel = 1e-3;         // of each test
+constexpr std::size_t kMinPeriods = 9;  // fewer are too few to tell a harmonic from what lies beside it
+constexpr double kMinSamples = 10;      // in a period
 
 /// Times of the trajectory's maxima [s], each from a parabola through three samples.
 std::vector<double> Maxima(const VectorXd& time, const VectorXd& fitted) {
@@ -33,20 +34,36 @@ std::vector<double> Maxima(const VectorXd& time, const VectorXd& fitted) {
   return maxima;
 }
 
-/// The residuals between the first and the last maximum of the swing, over its phase.
+/// The residuals between the first and the last maximum of the swing, over its phase, and their sums of squares.
 struct PhasedResiduals {
+  /// Samples of one part of the recording.
+  struct Part {
+    double squares = 0, samples = 0;
+
+    void Add(double z) {
+      squares += z * z;
+      ++samples;
+    }
+  };
+
   std::vector<double> phase;  // in periods from the first maximum
   std::vector<double> z;
   double periods = 0;
+  std::vector<Part> parts;  // each period, and what is before and after them
 };
 
 PhasedResiduals OverPhase(const VectorXd& time, const VectorXd& z, const std::vector<double>& maxima) {
   PhasedResiduals phased;
   phased.periods = static_cast<double>(maxima.size() - 1);
+  phased.parts.resize(maxima.size() + 1);
   std::size_t period = 0;
   for (Index i = 0; i < time.size(); ++i) {
-    if (time[i] < maxima.front() || time[i] >= maxima.back()) continue;
+    if (time[i] < maxima.front() || time[i] >= maxima.back()) {
+      phased.parts[maxima.size() - (time[i] < maxima.front() ? 1 : 0)].Add(z[i]);
+      continue;
+    }
     while (time[i] >= maxima[period + 1]) ++period;
+    phased.parts[period].Add(z[i]);
     phased.phase.push_back(static_cast<double>(period) +
                            (time[i] - maxima[period]) / (maxima[period + 1] - maxima[period]));
     phased.z.push_back(z[i]);
@@ -84,33 +101,28 @@ bool PreferHarmonics(const PhasedResiduals& residuals) {
   return false;
 }
 
-/// Whether some period has more scatter than stationary noise allows.
+/// Whether the residuals of a period, or before or after all of them, scatter more than stationary noise does.
 bool ChangeSize(const PhasedResiduals& residuals, double squared_inflation) {
-  std::vector<double> sums(static_cast<std::size_t>(residuals.periods), 0.0), counts = sums;
-  double all = 0;
-  for (std::size_t i = 0; i < residuals.z.size(); ++i) {
-    const auto period = static_cast<std::size_t>(residuals.phase[i]);
-    sums[period] += residuals.z[i] * residuals.z[i];
-    ++counts[period];
-    all += residuals.z[i] * residuals.z[i];
-  }
-  const double variance = all / static_cast<double>(residuals.z.size());
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    const double freedom = counts[k] / squared_inflation;
-    if (sums[k] / (variance * squared_inflation) > ChiSquareQuantile(1 - kLevel / residuals.periods, freedom))
-      return true;
-  }
-  return false;
+  double squares = 0;
+  for (const double z : residuals.z) squares += z * z;
+  const double variance = squares / static_cast<double>(residuals.z.size());
+  const auto tests = static_cast<double>(residuals.parts.size());
+  return std::ranges::any_of(residuals.parts, [&](const PhasedResiduals::Part& part) {
+    if (part.samples == 0) return false;
+    const double freedom = part.samples / squared_inflation;
+    return part.squares / (variance * squared_inflation) > ChiSquareQuantile(1 - kLevel / tests, freedom);
+  });
 }
 
 }  // namespace
 
-bool IsSwingMisfit(const VectorXd& time, const VectorXd& fitted, const VectorXd& z, double squared_inflation) {
+bool IsSwingMisfit(const VectorXd& time, const VectorXd& fitted, const VectorXd& z,
+                   std::optional<double> squared_inflation) {
   const std::vector<double> maxima = Maxima(time, fitted);
   if (maxima.size() < kMinPeriods + 1) return true;
   const PhasedResiduals residuals = OverPhase(time, z, maxima);
   if (static_cast<double>(residuals.z.size()) < kMinSamples * residuals.periods) return true;
-  return PreferHarmonics(residuals) || ChangeSize(residuals, std::max(squared_inflation, 1.0));
+  return PreferHarmonics(residuals) || (squared_inflation && ChangeSize(residuals, std::max(*squared_inflation, 1.0)));
 }
 
 }  // namespace pendulum

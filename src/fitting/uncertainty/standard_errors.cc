@@ -183,10 +183,11 @@ std::string MethodOf(const NoiseModel& noise, const Autocorrelation& correlation
   return "inverse observed information of the parameters and sigma, readings assumed independent";
 }
 
-/// samples: F, effective ones of the recordings that tell of each parameter.
-Eigen::VectorXd StudentT95(const Eigen::VectorXd& samples) {
-  const auto free = static_cast<double>(samples.size());
-  return samples.unaryExpr([&](double count) { return StudentQuantile(0.975, std::max(count - free, 1.0)); });
+/// samples: F, the effective samples of the recordings on which each parameter depends; all: those of all recordings.
+/// Each recording loses its share of the F degrees of freedom.
+Eigen::VectorXd StudentT95(const Eigen::VectorXd& samples, double all) {
+  const double kept = 1 - static_cast<double>(samples.size()) / all;
+  return samples.unaryExpr([&](double count) { return StudentQuantile(0.975, std::max(kept * count, 1.0)); });
 }
 
 /// Standard error of σ, which is estimated together with the parameters, from the blocks of the inverse of the joint
@@ -257,7 +258,9 @@ Errors ComputeErrors(const SolvedFit& fit, const Optimum& optimum) {
       own.method =
           "inverse information, residuals assumed independent, because their autocorrelation gives no valid covariance";
   }
-  errors.t95 = StudentT95(samples);
+  double all = 0;
+  for (const NoiseErrors& run : errors.runs) all += run.effective_samples;
+  errors.t95 = StudentT95(samples, all);
   return errors;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,6 +66,34 @@ TEST(IsSwingMisfit, SeesATouchInOnePeriod) {
   VectorXd touch = VectorXd::Zero(kSamples);
   touch.segment(1700, 100).setConstant(4);
   EXPECT_GT(ShareSeen(touch, 0.5), 0.9);
+}
+
+// The fewest periods that are judged.
+TEST(IsSwingMisfit, SeesAMisfitOfNinePeriods) {
+  const VectorXd phase = 2 * kPi / 1.95 * EvenTimes(kSamples);
+  const VectorXd swing = (-EvenTimes(kSamples) / 25).array().exp() * phase.array().cos();
+  const VectorXd misfit =
+      3 * (kPi * EvenTimes(kSamples) / 20).array().cos() * phase.array().cos();  // as friction of another law
+  int seen = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const VectorXd noise = FirstOrderNoise(kSamples, 0.5, 0, seed);
+    EXPECT_FALSE(IsSwingMisfit(EvenTimes(kSamples), swing, noise, SquaredInflation(0.5))) << seed;
+    seen += IsSwingMisfit(EvenTimes(kSamples), swing, misfit + noise, std::nullopt) ? 1 : 0;
+  }
+  EXPECT_GT(seen, 45);
+}
+
+TEST(IsSwingMisfit, SeesARestBesideTheTrajectory) {
+  VectorXd swing = Swing();
+  swing.tail(600).setConstant(swing[1400]);
+  VectorXd beside = VectorXd::Zero(kSamples);
+  beside.tail(550).setConstant(2);
+  int seen = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const VectorXd noise = FirstOrderNoise(kSamples, 0.5, 0, seed);
+    seen += IsSwingMisfit(EvenTimes(kSamples), swing, beside + noise, SquaredInflation(0.5)) ? 1 : 0;
+  }
+  EXPECT_GT(seen, 45);
 }
 
 TEST(IsSwingMisfit, CannotTellFromFewPeriodsOrSamples) {

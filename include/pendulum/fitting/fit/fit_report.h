@@ -116,7 +116,9 @@ struct FitReport {
   std::vector<ParameterEstimate> parameters;  ///< As FitParameters; the covariance has the same order.
   std::vector<DerivedQuantity> derived;
   std::vector<std::string> covariance_names;  ///< The free parameters that are not at a bound.
-  Eigen::MatrixXd covariance;  ///< M x M, M = covariance_names.size(), products of the parameters' units.
+  /// M x M, M = covariance_names.size(), products of the parameters' units. Parameters at a bound are held there, which
+  /// std_error does not assume.
+  Eigen::MatrixXd covariance;
   std::string std_error_method, interval_method;
   std::vector<ProfileCurve> profiles;  ///< In the order of the parameters; empty unless intervals are profiles.
   std::vector<std::string> systematic_names;

@@ -30,6 +30,10 @@ namespace pendulum {
 std::vector<Warning> FitWarnings(const Recording& recording, const FitProblem& problem, const Solution& solution,
                                  const Description& described);
 
+/// Root mean square of N residuals over the noise between neighbouring samples (SuccessiveDifferenceNoise): about 1 if
+/// the noise is white. time: s.
+double RatioToNeighbourNoise(const Eigen::VectorXd& time, const Eigen::VectorXd& residual);
+
 /// Adds a warning for each suspicion of the report, with the code "suspected_" and the name of the cause: how large it
 /// seems to be, whether the estimates allow for it, and what to measure or which flag to set. is_correctable: whether
 /// the readings were not corrected although they can be.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 namespace pendulum {
@@ -9,9 +11,10 @@ namespace pendulum {
 /// prefers harmonics of the swing nor changes its size from period to period (MODEL.md eq. (5.6), (5.7)). A recording
 /// of too few periods or samples to tell counts as a misfit. False alarm rate for stationary noise: 2e-3.
 ///
-/// time: s, increasing; fitted: the trajectory in the unit of the readings; z: quantile residuals; squared_inflation:
-/// 1 + 2 Σ ρ_k² of their autocorrelation (Autocorrelation::SquaredInflation).
+/// time: s, increasing; fitted: the trajectory in the unit of the readings, which oscillates once in a period; z:
+/// quantile residuals; squared_inflation: 1 + 2 Σ ρ_k² of their autocorrelation (Autocorrelation::SquaredInflation); if
+/// it is not known, changes of size are not tested.
 bool IsSwingMisfit(const Eigen::VectorXd& time, const Eigen::VectorXd& fitted, const Eigen::VectorXd& z,
-                   double squared_inflation);
+                   std::optional<double> squared_inflation);
 
 }  // namespace pendulum
