@@ -59,13 +59,13 @@ struct Half {
   UnboundedEstimate estimate;
 };
 
-/// How much the deviance of a half rises if it has the whole fit's inertia and friction and a start of its own;
-/// std::nullopt if there is no such fit.
+/// How much the deviance of a half rises from its estimate without bounds if it has the whole fit's inertia and
+/// friction and a start of its own; std::nullopt if there is no such fit.
 std::optional<double> RiseWithWholeFit(const Parts& parts, double from, double to, const Half& half) {
   const PartFit held = parts.Fit(from, to, half.estimate.names);
   if (!held.converged()) return std::nullopt;
   const NoiseModel noise = parts.NoiseOf(half.fit.fit);
-  double rise = 0;
+  double rise = half.estimate.gain;
   for (Index i = 0; i < half.fit.part.size(); ++i) {
     const NoiseModel of_sample = noise.ForSample(i);
     const double value = half.fit.part.value[i];
@@ -103,11 +103,6 @@ void SetHalves(const UnboundedEstimate& first, const UnboundedEstimate& second, 
   result.halves_p = ChiSquareTail(statistic, result.halves_dof);
 }
 
-/// Whether a parameter is at its bound, so that the deviance does not tell how far beyond the readings would have it.
-bool IsAtBound(const FitReport& fit) {
-  return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& parameter) { return parameter.at_bound; });
-}
-
 bool HalvesDiffer(const Constancy& result) {
   const auto differs = [](const HalvesRow& row) { return TwoSidedP(row.z) < kNotConstant; };
   return result.halves_p && (*result.halves_p < kNotConstant || std::ranges::any_of(result.halves, differs));
@@ -131,7 +126,7 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
   }
   const auto& [first, second] = halves;
   SetHalves(first.estimate, second.estimate, fit, 1, result);
-  if (HalvesDiffer(result) && !IsAtBound(first.fit.fit) && !IsAtBound(second.fit.fit)) {
+  if (HalvesDiffer(result)) {
     const double of_likelihood =
         SquaredLength(second.estimate.value - first.estimate.value,
                       first.estimate.likelihood_covariance + second.estimate.likelihood_covariance);

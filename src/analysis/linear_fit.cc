@@ -132,6 +132,8 @@ std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const 
   const auto size = static_cast<Index>(values.size());
   estimate.value = Eigen::Map<const VectorXd>(values.data(), size);
   estimate.covariance = covariance.topLeftCorner(size, size);
+  const VectorXd gradient = linear->jacobian(Eigen::all, linear->free).transpose() * terms.score;
+  estimate.gain = gradient.dot(step);
   estimate.likelihood_covariance = linear->inverse.topLeftCorner(size, size);
   return estimate;
 }

@@ -69,6 +69,7 @@ struct UnboundedEstimate {
   Eigen::VectorXd value;                  ///< K
   Eigen::MatrixXd covariance;             ///< K x K
   Eigen::MatrixXd likelihood_covariance;  ///< K x K, of the likelihood alone, without autocorrelation.
+  double gain = 0;                        ///< By how much the step from the fit lowers the deviance.
 };
 
 /// One step from the fit to the maximum of the likelihood without bounds. std::nullopt as LinearizeFit.

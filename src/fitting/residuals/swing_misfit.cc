@@ -40,8 +40,8 @@ struct PhasedResiduals {
   struct Part {
     double squares = 0, samples = 0;
 
-    void Add(double z) {
-      squares += z * z;
+    void Add(double residual) {
+      squares += residual * residual;
       ++samples;
     }
   };
