@@ -300,7 +300,7 @@ Section StatisticsSection(const Identification& identification, std::size_t inde
       {"AIC, AICc, BIC",
        FixedText(statistics.aic, 2) + ", " + FixedText(statistics.aicc, 2) + ", " + FixedText(statistics.bic, 2)}};
   if (fit.HasWarning("lack_of_fit"))
-    facts.push_back({"lack of fit", "the residuals are more than noise and follow the swing", Emphasis::kCaution});
+    facts.push_back({"lack of fit", "the residuals are more than noise", Emphasis::kCaution});
   if (identification.is_joint()) facts.push_back({"separate fit", identification.across[index].separate[k]});
   return {"Noise and statistics", "", {std::move(facts)}};
 }
