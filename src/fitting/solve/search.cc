@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/physics.h"
+#include "pendulum/fitting/solve/optimum.h"
 
 namespace pendulum {
 namespace {
@@ -200,6 +203,24 @@ bool ExplainsData(const TrajectoryData& data, const Solution& solution) {
   return solution.usable && solution.sum <= kExplained * Variance(data);
 }
 
+/// Whether the data determine all free parameters at a solution.
+bool IsDetermined(const LeastSquares& cost, const Solution& solution, const SolveOptions& options) {
+  const std::optional<Optimum> optimum = Linearize(options, cost, solution);
+  return optimum && optimum->inverse.identifiable;
+}
+
+/// Whether a solution is the better of two. If the data do not prefer one significantly, it is the one at which they
+/// determine all parameters: noise is often fitted a little better by friction that acts at rest alone.
+bool IsBetter(const TrajectoryCost& cost, const TrajectoryData& data, const Solution& one, const Solution& than,
+              const SolveOptions& options) {
+  const double significant = ChiSquareQuantile(0.95, 1);  // of the deviance, with the likeliest σ of each
+  if (!one.usable || !than.usable) return one.usable;
+  const double gain = static_cast<double>(data.time.size()) * std::log(than.sum / one.sum);
+  if (!(std::abs(gain) < significant)) return one.sum < than.sum;
+  const bool is_determined = IsDetermined(cost, one, options);
+  return is_determined == IsDetermined(cost, than, options) ? one.sum < than.sum : is_determined;
+}
+
 }  // namespace
 
 Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& options) {
@@ -216,7 +237,7 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGue
   if (ExplainsData(data, best) && !MayReachRest(cost, best.parameters, options)) return best;
   for (const int k : RemovableFriction(options)) {
     Solution other = SolveWithout(cost, data, guess, k, WithBudget(cost, options));
-    const bool better = other.usable && (!best.usable || other.sum < best.sum);
+    const bool better = IsBetter(cost, data, other, best, options);
     std::vector<Minimum> others = std::move(best.other_minima);
     if (better) std::swap(best, other);
     if (other.usable) others.push_back({other.parameters, other.sum});
