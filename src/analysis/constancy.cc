@@ -65,14 +65,8 @@ std::optional<double> RiseWithWholeFit(const Parts& parts, double from, double t
   const PartFit held = parts.Fit(from, to, half.estimate.names);
   if (!held.converged()) return std::nullopt;
   const NoiseModel noise = parts.NoiseOf(half.fit.fit);
-  double rise = half.estimate.gain;
-  for (Index i = 0; i < half.fit.part.size(); ++i) {
-    const NoiseModel of_sample = noise.ForSample(i);
-    const double value = half.fit.part.value[i];
-    rise += 2 * (of_sample.LikelihoodAt(value, half.fit.fit.fitted[i]).log -
-                 of_sample.LikelihoodAt(value, held.fit.fitted[i]).log);
-  }
-  return rise;
+  const auto log_likelihood = [&](const VectorXd& fitted) { return LogLikelihood(noise, half.fit.part.value, fitted); };
+  return half.estimate.gain + 2 * (log_likelihood(half.fit.fit.fitted) - log_likelihood(held.fit.fitted));
 }
 
 /// How many times too significant the halves' difference is, because the likelihood of a half is no parabola as far as

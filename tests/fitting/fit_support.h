@@ -81,7 +81,23 @@ inline SyntheticOptions NoisyRun(std::string_view model = "coulomb", std::uint64
   return run;
 }
 
-/// The same pendulum; at the first sample it passes -0.2 rad at 1.5 rad/s.
+/// A joint that sticks, with an encoder of 4096 counts: released at 1.2 rad, it rests at 20 s of 30. Its stop alone
+/// tells of static friction.
+inline SyntheticOptions StickingRun(double stribeck_rate, std::uint64_t seed) {
+  constexpr double kTorque = 3.708;  // N m
+  SyntheticOptions run = TextbookRun("stribeck");
+  run.parameters = {0.12 / kTorque, 0.015 / kTorque, 0.03 / kTorque, 0.06 / kTorque, stribeck_rate};
+  run.release_angle = 1.2;
+  run.release_time = 1.5;
+  run.duration = 30;
+  run.sample_rate = 200;
+  run.resolution = 2 * kPi / 4096;
+  run.noise = 0.15 * run.resolution;
+  run.seed = seed;
+  return run;
+}
+
+/// The same pendulum as the textbook's; at the first sample it passes -0.2 rad at 1.5 rad/s.
 inline SyntheticOptions MovingRun(std::string_view model) {
   SyntheticOptions options = TextbookRun(model);
   options.start = StartKind::kMoving;

@@ -158,27 +158,28 @@ TEST(SummarizeFit, OmitsTermsThatAreZero) {
 
 // ---- Remarks -------------------------------------------------------------------------------------------------------
 
-// With few independent samples Student's t makes the interval much wider than two errors.
-TEST(SummarizeFit, GivesIntervalsThatAreMuchWiderThanTwoErrors) {
+/// The remarks of the example with another error and interval of viscous friction, 0.003 N m s/rad.
+std::string RemarksWithViscous(double std_error, double lower, double upper) {
   Identification identification = ExampleIdentification();
-  EXPECT_THAT(SummarizeFit(identification, 0).remarks, Not(HasSubstr("95 %")));
   ParameterEstimate& viscous = identification.fits[0].parameters[1];
   viscous.estimate = 0.003;
-  viscous.std_error = 0.0004;
-  viscous.lower95 = 0.001;
-  viscous.upper95 = 0.008;
-  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("Quote as a 95 % interval: viscous 0.0010 to 0.0080"));
+  viscous.std_error = std_error;
+  viscous.lower95 = lower;
+  viscous.upper95 = upper;
+  return SummarizeFit(identification, 0).remarks;
+}
+
+// With few independent samples Student's t makes the interval much wider than two errors.
+TEST(SummarizeFit, GivesIntervalsThatAreMuchWiderThanTwoErrors) {
+  EXPECT_THAT(SummarizeFit(ExampleIdentification(), 0).remarks, Not(HasSubstr("95 %")));
+  EXPECT_THAT(RemarksWithViscous(0.0004, 0.001, 0.008),
+              HasSubstr("Quote as a 95 % interval: viscous 0.0010 to 0.0080"));
 }
 
 // A bound of another parameter lets an estimate move to one side only.
 TEST(SummarizeFit, GivesIntervalsWithOneMuchLongerSide) {
-  Identification identification = ExampleIdentification();
-  ParameterEstimate& viscous = identification.fits[0].parameters[1];
-  viscous.estimate = 0.003;
-  viscous.std_error = 0.0005;
-  viscous.lower95 = 0.002;
-  viscous.upper95 = 0.0031;
-  EXPECT_THAT(SummarizeFit(identification, 0).remarks, HasSubstr("Quote as a 95 % interval: viscous 0.0020 to 0.0031"));
+  EXPECT_THAT(RemarksWithViscous(0.0005, 0.002, 0.0031),
+              HasSubstr("Quote as a 95 % interval: viscous 0.0020 to 0.0031"));
 }
 
 TEST(SummarizeFit, NamesTermsThatMayBeZero) {

@@ -12,16 +12,12 @@ intervals with the truth outside COVERAGE by more than two standard deviations o
 below LEAST_Z, or if too many estimates have no error.
 """
 
-import argparse
 import collections
-import concurrent.futures
 import fnmatch
-import json
 import math
 import os
 import pathlib
 import sys
-import tempfile
 import zlib
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -30,7 +26,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy  # noqa: E402, because it reads the environment when it is imported
 
 import judging  # noqa: E402
-from lab import RIG, Lab, record, textbook_lab  # noqa: E402
+import study  # noqa: E402
+from lab import RIG, Lab, textbook_lab  # noqa: E402
 from row_summary import LEAST_JUDGED, of_parameter  # noqa: E402
 from scenarios import ANGLE, DEG  # noqa: E402
 
@@ -88,8 +85,7 @@ def run(tool: pathlib.Path, cell: str, seed: int) -> judging.Outcome:
     if "rig" in causes:
         draw_rig(lab)
     sensor = judging.EXACT_SENSOR | {cause: STATED[cause] for cause in causes if cause in STATED} if is_stated else None
-    with tempfile.TemporaryDirectory() as folder:
-        return judging.fit(tool, pathlib.Path(folder), record(lab), "coulomb", ANGLE, sensor)
+    return study.fit(tool, lab, "coulomb", ANGLE, sensor)
 
 
 def summary(cell: str, outcomes: list[judging.Outcome]) -> dict:
@@ -126,28 +122,21 @@ def line(found: dict) -> str:
 
 def main() -> int:
     """Runs the cells, prints a row of each and returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bin_dir", type=pathlib.Path)
+    parser = study.parser_of(__doc__)
     parser.add_argument("--count", type=int, default=2000, help="recordings of each cell")
-    parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--cells", default="*", help="patterns with semicolons between them")
-    parser.add_argument("--json", type=pathlib.Path)
     arguments = parser.parse_args()
-    tool = arguments.bin_dir.resolve() / "fit_pendulum"
-    if not tool.exists():
-        parser.error(f"there is no {tool}")
+    tool = study.tool_of(parser, arguments)
     cells = [cell for cell in CELLS if any(fnmatch.fnmatch(cell, part) for part in arguments.cells.split(";"))]
     if not cells:
         parser.error(f"no cell matches {arguments.cells}; there are {'; '.join(CELLS)}")
     print(f"{'cell':30}{'named':>6} " + "".join(f"{name[:12]:>13}" for name in ANGLE))
     rows = []
-    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        work = {cell: [pool.submit(run, tool, cell, FIRST_SEED + index) for index in range(arguments.count)] for cell in cells}
-        for cell, of_cell in work.items():
-            rows.append(summary(cell, [future.result() for future in of_cell]))
+    with study.runner(arguments.jobs) as run_all:
+        for cell in cells:
+            rows.append(summary(cell, run_all(run, [(tool, cell, FIRST_SEED + index) for index in range(arguments.count)])))
             print(line(rows[-1]), flush=True)
-            if arguments.json:
-                arguments.json.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+            study.write(arguments.json, rows)
     return 1 if any(map(faults, rows)) else 0
 
 

@@ -9,21 +9,19 @@ stated about the sensor, so each cause may be suspected. A cause is named by a s
 cause. Exit code 1 if the share is above --most, or if fewer than 0.9 of the parameters could be judged.
 """
 
-import argparse
 import collections
-import concurrent.futures
 import itertools
 import json
 import os
 import pathlib
 import sys
-import tempfile
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import judging  # noqa: E402, because NumPy reads the environment when it is imported
-from lab import record, textbook_lab  # noqa: E402
+import study  # noqa: E402
+from lab import textbook_lab  # noqa: E402
 from row_summary import LEAST_JUDGED  # noqa: E402
 from scenarios import ANGLE, set_bits, set_noise  # noqa: E402
 
@@ -39,8 +37,7 @@ def run(tool: pathlib.Path, index: int) -> judging.Outcome:
     lab = textbook_lab(FIRST_SEED + index)
     set_bits(lab, bits)
     set_noise(lab, counts, correlation)
-    with tempfile.TemporaryDirectory() as folder:
-        return judging.fit(tool, pathlib.Path(folder), record(lab), "coulomb", ANGLE)
+    return study.fit(tool, lab, "coulomb", ANGLE)
 
 
 def summary(outcomes: list[judging.Outcome]) -> dict:
@@ -62,23 +59,15 @@ def summary(outcomes: list[judging.Outcome]) -> dict:
 
 def main() -> int:
     """Runs the recordings, prints the counts and returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bin_dir", type=pathlib.Path)
+    parser = study.parser_of(__doc__)
     parser.add_argument("--count", type=int, default=2000)
-    parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--most", type=float, default=0.01, help="largest share of alarms")
-    parser.add_argument("--json", type=pathlib.Path)
     arguments = parser.parse_args()
-    tool = arguments.bin_dir.resolve() / "fit_pendulum"
-    if not tool.exists():
-        parser.error(f"there is no {tool}")
-    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        work = [pool.submit(run, tool, index) for index in range(arguments.count)]
-        found = summary([future.result() for future in work])
-    text = json.dumps(found, indent=1)
-    print(text)
-    if arguments.json:
-        arguments.json.write_text(text + "\n", encoding="utf-8")
+    tool = study.tool_of(parser, arguments)
+    with study.runner(arguments.jobs) as run_all:
+        found = summary(run_all(run, [(tool, index) for index in range(arguments.count)]))
+    print(json.dumps(found, indent=1))
+    study.write(arguments.json, found)
     too_many = found["alarms"] > arguments.most * found["recordings"]
     return 1 if too_many or found["judged"] < LEAST_JUDGED * found["expected"] else 0
 

@@ -14,23 +14,20 @@ interval where it is wider), and z of inertia and the errors, separately where t
 constant. Exit code 1 if a share is above --most.
 """
 
-import argparse
 import collections
-import concurrent.futures
 import dataclasses
-import json
 import math
 import os
 import pathlib
 import statistics
 import sys
-import tempfile
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import judging  # noqa: E402, because NumPy reads the environment when it is imported
-from lab import GRAVITY_TORQUE, Lab, record, textbook_lab  # noqa: E402
+import study  # noqa: E402
+from lab import GRAVITY_TORQUE, Lab, textbook_lab  # noqa: E402
 from row_summary import finite, verdict  # noqa: E402
 from scenarios import DEG, PRESLIDING, set_bristles  # noqa: E402
 
@@ -56,10 +53,10 @@ def stopping_coulomb(viscous: float, amplitude: float, half_swings: float) -> fl
     return GRAVITY_TORQUE * amplitude * ratio**half_swings / taken
 
 
-def drawn(study: str, seed: int) -> Lab:
+def drawn(name: str, seed: int) -> Lab:
     """The rig of one recording."""
     lab = textbook_lab(seed)
-    is_varied = study == "varied"
+    is_varied = name == "varied"
     angle = lab.rng.uniform(*((5, 60) if is_varied else (8, 40))) * DEG
     half_swings = lab.rng.uniform(6, 40 if is_varied else 20)
     lab.set("body", inertia=INERTIA)
@@ -83,11 +80,10 @@ class Fitted:
     outcome: judging.Outcome
 
 
-def run(tool: pathlib.Path, study: str, seed: int) -> Fitted:
+def run(tool: pathlib.Path, name: str, seed: int) -> Fitted:
     """Simulates and fits one recording."""
-    lab = drawn(study, seed)
-    with tempfile.TemporaryDirectory() as folder:
-        outcome = judging.fit(tool, pathlib.Path(folder), record(lab), "coulomb", JUDGED)
+    lab = drawn(name, seed)
+    outcome = study.fit(tool, lab, "coulomb", JUDGED)
     return Fitted(seed, {"amplitude_deg": finite(abs(lab.hand.angle) / DEG, 3), "coulomb": finite(lab.law.coulomb, 3),
                          "presliding_deg": finite(lab.law.coulomb / lab.body.friction.stiffness / DEG, 3),
                          "rate_hz": lab.clock.rate, "swing_s": finite(lab.duration - lab.hand.time, 3)}, outcome)
@@ -125,9 +121,9 @@ def summary(fits: list[Fitted]) -> dict:
                               "codes": fit.outcome.codes} for fit in wrong]}
 
 
-def text(study: str, found: dict) -> str:
+def text(study_name: str, found: dict) -> str:
     """The summary for the terminal."""
-    lines = [f"{study}: {found['recordings']} recordings, exit codes {found['exit_codes']}",
+    lines = [f"{study_name}: {found['recordings']} recordings, exit codes {found['exit_codes']}",
              f"  wrong with exit 0: {found['wrong']} ({100 * found['share_wrong']:.1f} %) {found['wrong_by']}, "
              f"{found['wrong_and']}",
              f"  presliding or another law named in {found['named']}; without an error: {found['without_error']}",
@@ -142,25 +138,18 @@ def text(study: str, found: dict) -> str:
 
 def main() -> int:
     """Runs the studies, prints them and returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bin_dir", type=pathlib.Path)
+    parser = study.parser_of(__doc__)
     parser.add_argument("--stopping", type=int, default=72)
     parser.add_argument("--varied", type=int, default=500)
-    parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--most", type=float, default=0.01, help="largest share of wrong recordings")
-    parser.add_argument("--json", type=pathlib.Path)
     arguments = parser.parse_args()
-    tool = arguments.bin_dir.resolve() / "fit_pendulum"
-    if not tool.exists():
-        parser.error(f"there is no {tool}")
+    tool = study.tool_of(parser, arguments)
     found = {}
-    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
-        for study, count in (("stopping", arguments.stopping), ("varied", arguments.varied)):
-            work = [pool.submit(run, tool, study, FIRST_SEEDS[study] + index) for index in range(count)]
-            found[study] = summary([future.result() for future in work])
-            print(text(study, found[study]), flush=True)
-    if arguments.json:
-        arguments.json.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    with study.runner(arguments.jobs) as run_all:
+        for name, count in (("stopping", arguments.stopping), ("varied", arguments.varied)):
+            found[name] = summary(run_all(run, [(tool, name, FIRST_SEEDS[name] + index) for index in range(count)]))
+            print(text(name, found[name]), flush=True)
+    study.write(arguments.json, found)
     return 1 if any(each["share_wrong"] > arguments.most for each in found.values()) else 0
 
 

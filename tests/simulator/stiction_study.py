@@ -7,28 +7,24 @@
 A rig with G of 3.708 N m, inertia 0.12, viscous 0.015, coulomb 0.03 and stiction 0.06 (each drawn with a few per cent), released
 at 1.2 rad, an encoder of 4096 counts with noise of 0.15 count, 200 samples a second for 30 s; the user states G and a sensor
 without faults. For each Stribeck rate [rad/s] it prints exit codes, the share of recordings in which the answer is wrong with
-exit code 0, and for each parameter the share with an interval, the coverage of the intervals, and the median error.
+exit code 0, and for each parameter how many have an interval, the coverage of the intervals, z, and the median error.
 Exit code 1 if fewer than 95 % of the recordings of a rate end with a result, more than 1 % are wrong, or intervals of a
 parameter cover less than 0.9.
 """
 
-import argparse
 import collections
-import concurrent.futures
-import json
 import math
 import os
 import pathlib
-import statistics
 import sys
-import tempfile
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import judging  # noqa: E402, because NumPy reads the environment when it is imported
-from lab import Lab, Recording, record, textbook_lab  # noqa: E402
-from row_summary import finite  # noqa: E402
+import study  # noqa: E402
+from lab import Lab, textbook_lab  # noqa: E402
+from row_summary import finite, of_parameter  # noqa: E402
 
 FIRST_SEED = 800_000
 GRAVITY_TORQUE = 1.8 * 9.81 * 0.21  # N m
@@ -55,29 +51,15 @@ def drawn(rate: float, seed: int) -> Lab:
     return lab
 
 
-def run(tool: pathlib.Path, rate: float, seed: int) -> tuple[Recording, judging.Outcome]:
-    """Simulates and fits one recording."""
-    lab = drawn(rate, seed)
-    recording = record(lab)
-    with tempfile.TemporaryDirectory() as folder:
-        outcome = judging.fit(tool, pathlib.Path(folder), recording, "stribeck", ALWAYS, judging.EXACT_SENSOR, FRICTION)
-    return seed, outcome
-
-
-def of_parameter(name: str, outcomes: list[judging.Outcome]) -> dict:
-    """Intervals of one parameter."""
-    judged = [outcome.judged[name] for outcome in outcomes if name in outcome.judged]
-    if not judged:
-        return {"share": 0.0}
-    return {"share": finite(len(judged) / len(outcomes), 3),
-            "coverage": finite(statistics.fmean(each.is_covered for each in judged), 3),
-            "rms_z": finite(math.sqrt(statistics.fmean(min(each.z**2, 1e4) for each in judged)), 3),
-            "relative_error": finite(statistics.median(each.relative_error for each in judged), 3)}
+def run(tool: pathlib.Path, rate: float, seed: int) -> tuple[int, judging.Outcome]:
+    """Simulates and fits one recording. Returns its seed and the outcome."""
+    return seed, study.fit(tool, drawn(rate, seed), "stribeck", ALWAYS, judging.EXACT_SENSOR, FRICTION)
 
 
 def summary(fits: list[tuple[int, judging.Outcome]]) -> dict:
     """What the recordings of one rate say together."""
     ended = [outcome for _, outcome in fits if outcome.exit_code == 0]
+    judged = {name: [outcome.judged[name] for outcome in ended if name in outcome.judged] for name in (*ALWAYS, *FRICTION)}
     return {"recordings": len(fits), "exit_codes": dict(collections.Counter(each.exit_code for _, each in fits)),
             "ended": finite(len(ended) / len(fits), 3),
             "wrong": [{"seed": seed, "z": {name: finite(each.z, 3) for name, each in outcome.judged.items()}}
@@ -85,7 +67,7 @@ def summary(fits: list[tuple[int, judging.Outcome]]) -> dict:
             "without": [{"seed": seed, "message": outcome.message} for seed, outcome in fits if outcome.exit_code],
             "doubted": sum(outcome.is_doubted for outcome in ended),
             "codes": dict(collections.Counter(code for outcome in ended for code in (*outcome.codes, *outcome.causes))),
-            "parameters": {name: of_parameter(name, ended) for name in (*ALWAYS, *FRICTION)}}
+            "parameters": {name: of_parameter(of_name) for name, of_name in judged.items() if of_name}}
 
 
 def text(rate: float, found: dict) -> str:
@@ -100,29 +82,22 @@ def text(rate: float, found: dict) -> str:
 def fails(found: dict) -> bool:
     """Whether the recordings of a rate miss what they must show."""
     return (found["ended"] < LEAST_ENDED or len(found["wrong"]) > MOST_WRONG * found["recordings"] or
-            any(each.get("coverage", 1) < LEAST_COVERED for each in found["parameters"].values()))
+            any(each["coverage"] < LEAST_COVERED for each in found["parameters"].values()))
 
 
 def main() -> int:
     """Runs the study, prints it and returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bin_dir", type=pathlib.Path)
+    parser = study.parser_of(__doc__)
     parser.add_argument("--count", type=int, default=200, help="recordings of each rate")
     parser.add_argument("--rates", default="0.03,0.05,0.1,0.3,1")
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--json", type=pathlib.Path)
     arguments = parser.parse_args()
-    tool = arguments.bin_dir.resolve() / "fit_pendulum"
-    if not tool.exists():
-        parser.error(f"there is no {tool}")
+    tool = study.tool_of(parser, arguments)
     found = {}
-    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
+    with study.runner(arguments.jobs) as run_all:
         for rate in map(float, arguments.rates.split(",")):
-            work = [pool.submit(run, tool, rate, FIRST_SEED + index) for index in range(arguments.count)]
-            found[rate] = summary([future.result() for future in work])
+            found[rate] = summary(run_all(run, [(tool, rate, FIRST_SEED + index) for index in range(arguments.count)]))
             print(text(rate, found[rate]), flush=True)
-    if arguments.json:
-        arguments.json.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    study.write(arguments.json, found)
     return 1 if any(map(fails, found.values())) else 0
 
 

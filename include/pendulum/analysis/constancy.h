@@ -55,7 +55,7 @@ struct Constancy {
   bool is_too_short_for_windows() const;  ///< No test can show how a parameter depends on amplitude.
 };
 
-/// Of each of some ten tests of a recording, so that fewer than one constant recording in 200 seems to change.
+/// The level of each of some ten tests of a recording.
 inline constexpr double kNotConstant = 3e-4;
 
 /// Fits two parts of the recording with about equal information (the earlier one is shorter) and compares them (G. C.

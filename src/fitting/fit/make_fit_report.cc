@@ -125,15 +125,19 @@ Eigen::VectorXd WideningWithoutBounds(const Optimum& optimum) {
   return widening;
 }
 
-/// The elements of WideningWithoutBounds for the free parameters of recording k.
-Eigen::VectorXd OwnWidening(const FitState& state, std::size_t k) {
-  const Eigen::VectorXd widening = WideningWithoutBounds(state.optimum);
-  return widening(RowsAmong(state.fit.runs[k].at, state.optimum.free, state.own[k].free));
+/// The elements for the free parameters of recording k.
+Eigen::VectorXd OwnElements(const Eigen::VectorXd& of_all, std::size_t k, const FitState& state) {
+  return of_all(RowsAmong(state.fit.runs[k].at, state.optimum.free, state.own[k].free));
+}
+
+void Enlarge(const Eigen::VectorXd& factors, Eigen::MatrixXd& covariance) {
+  covariance = factors.asDiagonal() * covariance * factors.asDiagonal();
 }
 
 /// Sets the intervals by the method of the options. Profiles and bootstrap fits need a likelihood, which posteriors are
-/// not.
-void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, FitState& state) {
+/// not. widening: WideningWithoutBounds.
+void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, const Eigen::VectorXd& widening,
+                  FitState& state) {
   const SolvedFit& fit = state.fit;
   if (fit.runs.front().options.interval == IntervalMethod::kBootstrap) {
     Description& only = state.descriptions.front();
@@ -142,10 +146,9 @@ void SetIntervals(const std::vector<Errors>& own_errors, const Errors& errors, F
   std::vector<FitReport*> reports;
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     reports.push_back(&state.descriptions[k].report);
-    Errors errors_of_run = own_errors[k];
-    const Eigen::VectorXd widening = OwnWidening(state, k);
-    errors_of_run.covariance = widening.asDiagonal() * errors_of_run.covariance * widening.asDiagonal();
-    SetCovarianceIntervals(fit.runs[k], state.own[k], errors_of_run, *reports.back());
+    Errors widened = own_errors[k];
+    Enlarge(OwnElements(widening, k, state), widened.covariance);
+    SetCovarianceIntervals(fit.runs[k], state.own[k], widened, *reports.back());
   }
   const bool is_likelihood = state.separate == nullptr || !state.separate->are_posteriors;
   if (is_likelihood && NeedsProfiles(fit, state.optimum, errors)) SetProfileIntervals(fit, state.optimum, reports);
@@ -158,20 +161,21 @@ std::optional<double> ErrorOfInterval(const ParameterEstimate& parameter) {
 }
 
 /// Enlarges the errors of recording k where a parameter is at its bound: it may be anywhere inside, and the others with
-/// it. Their errors are those of their intervals or, without an end, of a fit without bounds.
-void WidenByBounds(std::size_t k, Errors& errors, FitState& state) {
+/// it. Their errors are those of their intervals or, without an end, of a fit without bounds. widening:
+/// WideningWithoutBounds.
+void WidenByBounds(const Eigen::VectorXd& widening, std::size_t k, Errors& errors, FitState& state) {
   if (state.optimum.at_bound.empty()) return;
   const Optimum& own = state.own[k];
   FitReport& report = state.descriptions[k].report;
-  Eigen::VectorXd widening = OwnWidening(state, k);
+  Eigen::VectorXd factors = OwnElements(widening, k, state);
   for (std::size_t row = 0; row < own.free.size(); ++row) {
     ParameterEstimate& parameter = report.parameters[static_cast<std::size_t>(own.free[row])];
     const std::optional<double> error = ErrorOfInterval(parameter);
-    double& factor = widening[static_cast<Eigen::Index>(row)];
+    double& factor = factors[static_cast<Eigen::Index>(row)];
     if (error) factor = std::max(*error / *parameter.std_error, 1.0);
     *parameter.std_error *= factor;
   }
-  errors.covariance = widening.asDiagonal() * errors.covariance * widening.asDiagonal();
+  Enlarge(factors, errors.covariance);
 }
 
 /// Whether the readings show how friction falls from its static to its sliding value.
@@ -262,10 +266,11 @@ void SetErrors(const Correction& corrected, FitState& state) {
     own_systematic.push_back(SystematicOf(systematic, fit.runs[k].at));
     SetOwnErrors(fit.runs[k], own_optimum(k), own[k], own_systematic[k], state.descriptions[k].report);
   }
-  if (!sampled) SetIntervals(own, errors, state);
+  const Eigen::VectorXd widening = WideningWithoutBounds(state.optimum);
+  if (!sampled) SetIntervals(own, errors, widening, state);
   for (std::size_t k = 0; k < fit.runs.size(); ++k) {
     FitReport& report = state.descriptions[k].report;
-    if (!sampled) WidenByBounds(k, own[k], state);
+    if (!sampled) WidenByBounds(widening, k, own[k], state);
     SetDerived(fit.runs[k], own_optimum(k), own[k], own_systematic[k], report);
     // With the errors that are withdrawn below: a parameter without an error would count as identifiable.
     SetIdentifiability(fit.runs[k].problem, state.own[k], report);

@@ -298,7 +298,7 @@ Result<bool> TrimDisturbedEnds(const FitOptions& options, SwingState& state) {
   if (!state.HasNewWindow()) return false;
   ASSIGN_OR_RETURN(SwingFit result, FitBetween(state.result.used, state.swing, options));
   if (result.fit.termination == Termination::kConverged) {
-    Result<SwingFit> again = FitBetween(state.result.used, whole, StartingFrom(result.fit, options));
+    Result<SwingFit> again = FitBetween(std::move(state.result.used), whole, StartingFrom(result.fit, options));
     if (again && !LeavesMoreThanNoise(again->fit)) {
       state.swing = whole;
       state.result = *std::move(again);

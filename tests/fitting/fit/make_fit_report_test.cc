@@ -137,7 +137,7 @@ TEST(MakeFitReport, TheIntervalAtABoundEndsAtTheChiSquareRise) {
   EXPECT_GT(at_bound, 3);
 }
 
-// The error of viscous friction if dry friction were exactly 0 is a third of what its interval says.
+// If dry friction were exactly 0, as its estimate is, the error of viscous friction would be less than half.
 TEST(MakeFitReport, ErrorsAllowForAParameterAtItsBound) {
   int at_bound = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

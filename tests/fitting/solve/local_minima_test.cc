@@ -79,22 +79,6 @@ TEST(RunToRest, ReportsASecondMinimumOfSimilarQuality) {
 
 // ---- Static friction ------------------------------------------------------------------------------------------------
 
-/// A joint that sticks, with an encoder of 4096 counts: released at 1.2 rad, it rests at 20 s of 30. Its stop alone
-/// tells of static friction.
-SyntheticOptions StickingRun(double stribeck_rate, std::uint64_t seed) {
-  constexpr double kTorque = 3.708;  // N m
-  SyntheticOptions run = TextbookRun("stribeck");
-  run.parameters = {0.12 / kTorque, 0.015 / kTorque, 0.03 / kTorque, 0.06 / kTorque, stribeck_rate};
-  run.release_angle = 1.2;
-  run.release_time = 1.5;
-  run.duration = 30;
-  run.sample_rate = 200;
-  run.resolution = 2 * kPi / 4096;
-  run.noise = 0.15 * run.resolution;
-  run.seed = seed;
-  return run;
-}
-
 /// log L of the minimum that a search beginning at the truth finds.
 double LogLikelihoodFromTruth(const SyntheticOptions& run) {
   FitOptions options = ModelOptions("stribeck");
@@ -104,8 +88,6 @@ double LogLikelihoodFromTruth(const SyntheticOptions& run) {
   return Fit(Must(SimulateRecording(run)), options).statistics.log_likelihood;
 }
 
-// With a step to the next number of half swings along the profile alone, one of these twenty ended at another one; with
-// one reference rate to begin from, eight of them did.
 TEST(StickingRun, FindsTheRightMinimumForAnyStribeckRate) {
   for (const double stribeck_rate : {0.03, 0.1, 0.3, 1.0}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
