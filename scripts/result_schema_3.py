@@ -12,6 +12,8 @@ TOGETHER = ("rms_residual", "log_likelihood", "aic", "aicc", "bic", "effective_s
 def with_schema_3(result: dict) -> dict:
     """The result with one shape for one and for several recordings. The amplitude of a single one was not stored: it is null."""
     if result["schema_version"] != 2:
+        for recording in result["recordings"]:
+            recording.setdefault("left_out", None)  # the first results of version 3 lack it
         return result
     result = with_current_units(result)
     is_joint = isinstance(result["data"], list)
@@ -22,7 +24,7 @@ def with_schema_3(result: dict) -> dict:
     recordings = []
     for data, calibration, forms in zip(of_each("data"), of_each("calibration"), of_each("closed_forms")):
         reason = {"reason": result["reason"]} if forms is None and "reason" in result else {}
-        recordings.append({**data, "calibration": calibration, "closed_forms": forms, "fits": [], **reason})
+        recordings.append({**data, "left_out": None, "calibration": calibration, "closed_forms": forms, "fits": [], **reason})
     fits = []
     for fit in result["fits"]:
         shared = fit["shared"] if is_joint else physical(fit["parameters"])

@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "pendulum/analysis/reading_information.h"
+#include "pendulum/fitting/likelihood/reading_information.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
 #include "pendulum/fitting/likelihood/trajectory_cost.h"
 

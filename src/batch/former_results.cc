@@ -178,6 +178,7 @@ Json WithParts(const Json& warning) {
 Json ToVersion3(const Json& former) {
   Json recording = former.at("data");
   const Json closed_forms = MemberOf(former, "closed_forms");
+  recording["left_out"] = nullptr;
   recording["calibration"] = MemberOf(former, "calibration");
   recording["closed_forms"] = closed_forms;
   recording["fits"] = ArrayOf(former.at("fits"), OwnPart);

@@ -69,6 +69,7 @@ FreeSwing MakeSwing(const Recording& recording, const TurningPointTable& table, 
   swing.ends = ending.why;
   swing.half_period = table.half_period;
   for (std::size_t i = run.first; i <= run.last; ++i) {
+    if (i > run.first) swing.heights.push_back(std::abs(table.points[i].value - table.points[i - 1].value));
     swing.turns.push_back(table.points[i].time);
     swing.amplitude = std::max(swing.amplitude, table.Amplitude(i));
   }

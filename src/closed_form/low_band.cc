@@ -116,6 +116,7 @@ void LeaveOutVibration(const Recording& recording, double noise, double length, 
   if (left >= kMinTurns && 2 * left >= swing.turns.size()) {
     swing.from = *turn;
     swing.begins = {WindowBegin::Reason::kAfterVibration, 0, frequency};
+    swing.heights.erase(swing.heights.begin(), swing.heights.begin() + (turn - swing.turns.begin()));
     swing.turns.erase(swing.turns.begin(), turn);
     return;
   }

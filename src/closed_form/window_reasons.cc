@@ -25,7 +25,7 @@ std::string Sentence(const WindowBegin& begin) {
     case kAfterDrive: return "after a drive that kept the amplitude; --from 0 fits that too";
     case kAfterVibration:
       return "after a faster vibration of " + NumberText(begin.frequency_hz, 2) + " Hz has died away";
-    case kDisturbed: return "the motion before does not fit: the pendulum was touched, or follows another law";
+    case kDisturbed: return "the motion before does not fit: touched, or another law";
     case kUndersampled: return "sampled too slowly to see half swings: the whole recording";
     case kUndersampledAfterFirst:
       return "sampled too slowly to see half swings: the whole recording, without the first reading, at which it may "
@@ -47,12 +47,22 @@ std::string Sentence(const WindowEnd& end) {
       return "a gap of " + NumberText(end.gap_to - end.time, 3) + " s follows, which hides too many swings to bridge";
     case kBeforeMove: return "last turning point before the pendulum is moved";
     case kBeforeStop: return "last turning point before the pendulum is stopped";
-    case kDisturbed: return "the motion after does not fit: the pendulum was touched, or follows another law";
+    case kDisturbed: return "the motion after does not fit: touched, or another law";
     case kPresliding: return "smaller swings are faster: friction acts like a spring before it slides";
     case kNotConverging: return "with the motion after it the fit does not converge";
     case kCountsLost: return "an unknown number of counts was lost after it";
   }
   return "";
+}
+
+std::string Sentence(const LeftOut& left_out) {
+  constexpr double kMatters = 1.05;
+  const std::string count = std::to_string(left_out.half_swings), all = std::to_string(left_out.all) + " half swings";
+  const std::string what = !left_out.is_largest        ? count + " of " + all
+                           : left_out.half_swings == 1 ? "the largest of " + all
+                                                       : count + " of " + all + ", also the largest";
+  const double errors = left_out.larger_errors;
+  return what + ": errors " + (errors < kMatters ? "hardly change" : "× " + NumberText(errors, 2));
 }
 
 }  // namespace pendulum

@@ -94,6 +94,7 @@ void SummarizeUsed(const Recording& used, const FreeSwing& swing, DataSummary& d
   data.sensor = used.sensor_errors;
   data.begins = Sentence(swing.begins);
   data.ends = Sentence(swing.ends);
+  data.left_out = swing.left_out;
 }
 
 const std::optional<Rig>& Identification::si_rig() const {

@@ -2,10 +2,14 @@
 #include "pendulum/recording/oversampling.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <cstdlib>
 #include <system_error>
+#include <vector>
 
 #include "pendulum/base/physics.h"
 
@@ -44,7 +48,84 @@ NearestGrid FindNearestGrid(const Eigen::VectorXd& values, double spacing) {
   return grid;
 }
 
+/// Whether values that are not on a grid are between its points where means of n readings on these points are. With
+/// little noise they are few.
+bool HasMeansBetween(const Eigen::VectorXd& values, const NearestGrid& grid, double spacing, double n) {
+  constexpr double kOff = 0.15;         // from a point of the grid, or of n times as many points; spacings of that grid
+  constexpr double kLeastShare = 2e-3;  // of all values
+  constexpr double kMost = 0.8;         // of those off the grid
+  const auto is_off = [&](double value, double step) {
+    const double position = (value - grid.offset) / step;
+    return std::abs(position - std::round(position)) > kOff;
+  };
+  double off = 0, between = 0;
+  for (const double value : values) {
+    if (!is_off(value, spacing)) continue;
+    ++off;
+    if (!is_off(value, spacing / n)) ++between;
+  }
+  return between >= std::max(3.0, kLeastShare * static_cast<double>(values.size())) && between > kMost * off;
+}
+
+/// How far motion over values [steps] prefers some of the n residues: the size of the mean of exp(2πi value/n), 1 if
+/// all have one residue. Each value counts by how far it moves in a lag, so that all residues would count alike.
+struct Preference {
+  double size = 0;
+  double samples = 0;  ///< Effective number: by chance the square of the size is about 1/samples.
+};
+
+Preference PreferenceOf(const Eigen::VectorXi& steps, Eigen::Index lag, int n) {
+  std::vector<double> of_residue(static_cast<std::size_t>(n), 0.0);  // how far values with it have moved
+  double all = 0, squares = 0;
+  for (Eigen::Index i = lag; i + lag < steps.size(); ++i) {
+    const int moved = std::abs(steps[i + lag] - steps[i - lag]);
+    if (moved < n) continue;  // at a turning point, or at rest
+    of_residue[static_cast<std::size_t>(steps[i] % n)] += moved;
+    all += moved;
+    squares += static_cast<double>(moved) * moved;
+  }
+  if (!(all > 0)) return {};
+  std::complex<double> sum = 0;
+  for (int residue = 0; residue < n; ++residue) {
+    sum += std::polar(of_residue[static_cast<std::size_t>(residue)], 2 * kPi * residue / n);
+  }
+  return {std::abs(sum) / all, all * all / squares / static_cast<double>(lag)};
+}
+
 }  // namespace
+
+int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
+  // Two are left out: rows that were interpolated between others look like means of two.
+  constexpr std::array kNumbers = {3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 32, 50, 64};
+  constexpr Eigen::Index kMostSamples = 20000;
+  constexpr double kCounts = 20;  // that the motion must span
+  constexpr double kMostSteps = 1e9;
+  constexpr double kClear = 0.18;  // size of the preference
+  constexpr double kAsMuch = 0.9;
+  constexpr double kSignificant = 25;  // its square times the samples: 1e-11 by chance
+  if (!(step > 0) || value.size() == 0) return 1;
+  const auto part = value.head(std::min(value.size(), kMostSamples)).array();
+  const double lowest = part.minCoeff();
+  const double span = (part.maxCoeff() - lowest) / step;
+  if (!(span < kMostSteps)) return 1;
+  const Eigen::VectorXi steps = ((part - lowest) / step).round().cast<int>();
+  int likeliest = 1;
+  double largest = kClear / kAsMuch;
+  for (const int n : kNumbers) {
+    if (span < kCounts * n) break;
+    Preference preference;
+    for (Eigen::Index lag = 1; lag <= 16 && preference.samples * kClear * kClear < kSignificant; lag *= 4) {
+      const Preference next = PreferenceOf(steps, lag, n);
+      if (next.samples > preference.samples) preference = next;
+    }
+    // Without noise divisors of n are preferred as much.
+    if (preference.size < kAsMuch * largest || preference.samples * preference.size * preference.size < kSignificant)
+      continue;
+    likeliest = n;
+    largest = std::max(largest, preference.size);
+  }
+  return likeliest;
+}
 
 std::optional<AveragingWindow> ParseAveragingWindow(std::string_view text) {
   constexpr double kLongest = kLongestAveragingWindow;
@@ -71,7 +152,9 @@ void FindCountLevels(bool has_counts, Recording& recording) {
   oversampling.count = 0;
   if (oversampling.readings <= 1 || !(recording.resolution > 0)) return;
   const double n = oversampling.readings;
-  const bool on_resolution = FindNearestGrid(recording.value, recording.resolution).distance < kOnGrid;
+  const NearestGrid single = FindNearestGrid(recording.value, recording.resolution);
+  const bool on_resolution =
+      single.distance < kOnGrid && !HasMeansBetween(recording.value, single, recording.resolution, n);
   const double count = has_counts ? 1 : on_resolution ? n * recording.resolution : recording.resolution;
   const NearestGrid means = FindNearestGrid(recording.value, count / n);
   const bool are_rounded = has_counts && recording.resolution > 0.75 * count &&

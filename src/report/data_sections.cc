@@ -48,6 +48,7 @@ Section DataSection(const DataSummary& data) {
     facts.push_back({"begins", data.begins});
     facts.push_back({"ends", data.ends});
   }
+  if (data.left_out) facts.push_back({"left out", Sentence(*data.left_out)});
   if (data.clock_scale != 1 || data.clock_scale_std_dev > 0) {
     const ValueAndError scale = PdgText(data.clock_scale, data.clock_scale_std_dev);
     facts.push_back({"clock", scale.value + (scale.error.empty() ? "" : " ± " + scale.error) +

@@ -24,6 +24,14 @@ std::string WindowReason(const DataSummary& data) {
   return data.begins.empty() ? "" : "begins: " + data.begins + "; ends: " + data.ends;
 }
 
+Json LeftOutJson(const std::optional<LeftOut>& left_out) {
+  if (!left_out) return nullptr;
+  return {{"half_swings", left_out->half_swings},
+          {"of", left_out->all},
+          {"includes_largest", left_out->is_largest},
+          {"larger_errors", left_out->larger_errors}};
+}
+
 /// Null if nothing was decided about the sensor.
 Json SensorErrorsJson(const DataSummary& data) {
   if (data.sensor.kind.empty()) return nullptr;
@@ -65,6 +73,7 @@ Json RecordingJson(const Identification& identification, std::size_t k) {
       .Set("sensor", SensorErrorsJson(data))
       .Set("window_s", Json::array({data.from, data.to}))
       .Set("window_reason", TextOrNull(WindowReason(data)))
+      .Set("left_out", LeftOutJson(data.left_out))
       .Set("releases", Json(data.releases))
       .Set("release", data.release > 0 ? Json(data.release) : Json(nullptr))
       .Set("start", StartJson(identification, k))

@@ -226,7 +226,8 @@ std::string DataText(const DataSummary& data) {
     return time + " s" + (why.empty() ? "" : " (" + why + ")");
   };
   const bool is_whole = data.used_samples == data.samples;  // ends where the recording does
-  return text + ", " + end(from, data.begins) + " to " + end(to, is_whole ? "" : data.ends) + ".";
+  text += ", " + end(from, data.begins) + " to " + end(to, is_whole ? "" : data.ends) + ".";
+  return data.left_out ? text + " Left out: " + Sentence(*data.left_out) + "." : text;
 }
 
 std::string JointDataText(const Identification& identification) {

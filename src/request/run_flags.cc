@@ -23,7 +23,7 @@ namespace pendulum {
 namespace {
 
 Result<int> ParseRelease(const RunFlags& flags) {
-  if (flags.release.empty()) return SwingChoice::kLongest;
+  if (flags.release.empty()) return SwingChoice::kMostTelling;
   if (flags.release == "all") return SwingChoice::kAll;
   const auto number = ParseNumber("--release", flags.release, "all, or the number of a release from 1 on");
   if (!number) return tl::unexpected(number.error());
@@ -373,7 +373,8 @@ std::vector<RunFlag> MakeTable() {
        .needs_fit = true},
       {.name = "release",
        .value = &RunFlags::release,
-       .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the longest.",
+       .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the largest and "
+               "longest: the one that determines the period best.",
        .label = "Which free swing",
        .schema = {{"type", "integer"}, {"minimum", 1}}},
       {.name = "from",

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pendulum/analysis/reading_information.h"
+#include "pendulum/fitting/likelihood/reading_information.h"
 #include "tests/fitting/fit_support.h"
 
 namespace pendulum::cramer_rao_test {

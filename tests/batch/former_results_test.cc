@@ -45,6 +45,7 @@ TEST(ToCurrentResult, RenamesAndMovesWhatVersion1Had) {
     "rig": null,
     "recordings": [{
       "path": "why", "sampling": {"apparent_frequency_hz": 0.8},
+      "left_out": null,
       "calibration": {"input": "counts"},
       "closed_forms": null,
       "fits": [{

@@ -75,6 +75,7 @@ FreeSwing WholeSwing(const Recording& recording) {
   swing.amplitude = 1;
   swing.half_period = 0.5;
   for (double turn = 0.5; turn < swing.to; turn += 0.5) swing.turns.push_back(turn);
+  swing.heights.assign(swing.turns.size() - 1, 2);
   return swing;
 }
 

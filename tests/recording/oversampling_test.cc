@@ -2,8 +2,11 @@
 #include "pendulum/recording/oversampling.h"
 
 #include <cmath>
+#include <cstdint>
+#include <random>
 #include <string>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "pendulum/recording/readers/read_recording.h"
@@ -28,6 +31,42 @@ TEST(ParseAveragingWindow, RejectsOtherText) {
   for (const char* text :
        {"", "x", "nan", "inf", "-0.1", "1.1", "0.1,0.1", "0.2,0.1", "-1.5,0", "0,1.5", "0,1,2", "0,"})
     EXPECT_FALSE(ParseAveragingWindow(text)) << text;
+}
+
+/// Means of n rounded readings of a swing of 120 counts that decays, with noise of `sigma` counts, in steps of 1/n
+/// count.
+Eigen::VectorXd Means(int n, double sigma, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> noise(0, 1);
+  Eigen::VectorXd value(2000);
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    const double time = 0.01 * static_cast<double>(i);
+    const double angle = 0.37 + 120 * std::exp(-0.03 * time) * std::cos(4.8 * time);
+    double sum = 0;
+    for (int k = 0; k < n; ++k) sum += std::round(angle + sigma * noise(generator));
+    value[i] = sum / n;
+  }
+  return value;
+}
+
+TEST(ReadingsPerMean, FindsHowManyReadingsAMeanHas) {
+  for (const int n : {4, 8, 10, 16, 32}) {
+    for (const double sigma : {0.0, 0.05, 0.1, 0.25}) {
+      SCOPED_TRACE("means of " + std::to_string(n) + ", noise of " + std::to_string(sigma));
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(ReadingsPerMean(Means(n, sigma, seed), 1.0 / n), n);
+    }
+  }
+}
+
+// With more noise rounding averages out, so that nothing depends on the number.
+TEST(ReadingsPerMean, FindsNothingInSingleReadings) {
+  for (const double sigma : {0.0, 0.05, 0.1, 0.25, 0.5, 2.0}) {
+    SCOPED_TRACE(sigma);
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) EXPECT_EQ(ReadingsPerMean(Means(1, sigma, seed), 1), 1);
+  }
+  EXPECT_EQ(ReadingsPerMean(Means(16, 0.6, 1), 1.0 / 16), 1);
+  EXPECT_EQ(ReadingsPerMean(Eigen::VectorXd(), 1), 1);
+  EXPECT_EQ(ReadingsPerMean(Eigen::VectorXd::Constant(500, 3), 0), 1);
 }
 
 /// A swing of 30 counts read four times each, with readings that differ by one count now and then.
@@ -60,6 +99,22 @@ TEST(FindCountLevels, FindsTheGridOfAngles) {
   EXPECT_NEAR(recording->oversampling.count, 0.2, 1e-12);
   EXPECT_FALSE(recording->oversampling.is_level_known);
   EXPECT_NEAR(std::remainder(recording->oversampling.level, 0.05), 0, 1e-6);
+}
+
+// Without noise nearly all means are whole counts, and seem to be the levels of the means.
+TEST(FindCountLevels, SeesFewMeansBetweenCounts) {
+  constexpr double kCount = 0.2;
+  Recording recording;
+  recording.value.resize(2000);
+  for (Eigen::Index i = 0; i < recording.value.size(); ++i) {
+    recording.value[i] = kCount * std::round(120 * std::sin(0.05 * static_cast<double>(i)));
+    if (i % 50 == 0) recording.value[i] += kCount / 4;
+  }
+  recording.resolution = kCount;
+  recording.oversampling.readings = 4;
+  FindCountLevels(false, recording);
+  EXPECT_NEAR(recording.oversampling.count, kCount, 1e-12);
+  EXPECT_NEAR(recording.resolution, kCount / 4, 1e-12);
 }
 
 TEST(FindCountLevels, IsWithoutMeansTheResolution) {

@@ -67,7 +67,7 @@ TEST(ToJson, KeepsTheOrderOfKeysForOneRecordingAndForSeveral) {
         Keys(json["recordings"][0]),
         ElementsAre("path", "sha256", "samples", "used_samples", "duration_s", "sample_rate_hz", "resolution_rad",
                     "resolution_source", "clock_scale", "clock_scale_std_dev", "sensor", "window_s", "window_reason",
-                    "releases", "release", "start", "sampling", "calibration", "closed_forms", "fits"));
+                    "left_out", "releases", "release", "start", "sampling", "calibration", "closed_forms", "fits"));
     EXPECT_THAT(Keys(json["recordings"][0]["fits"][0]),
                 ElementsAre("model", "amplitude_rad", "parameters", "covariance", "correlation",
                             "systematic_covariance", "std_error_method", "identifiability", "noise", "statistics",
@@ -143,6 +143,13 @@ TEST(ToJson, HasNullForTheReleaseOfAGivenWindow) {
   EXPECT_EQ(ToJson(report)["recordings"][0]["release"], 2);
   report.recordings.front().data.release = 0;
   EXPECT_TRUE(ToJson(report)["recordings"][0]["release"].is_null());
+}
+
+TEST(ToJson, SaysWhatTheWindowLeavesOut) {
+  Identification report = ExampleIdentification();
+  report.recordings.front().data.left_out = LeftOut{12, 47, true, 1.8};
+  EXPECT_EQ(ToJson(report)["recordings"][0]["left_out"],
+            Json({{"half_swings", 12}, {"of", 47}, {"includes_largest", true}, {"larger_errors", 1.8}}));
 }
 
 TEST(ToJson, ExplainsMissingClosedForms) {

@@ -56,7 +56,7 @@ TEST(MakeIdentifyOptions, FitsCoulombToTheLongestSwingByDefault) {
   ASSERT_TRUE(options);
   EXPECT_THAT(options->models, ElementsAre("coulomb"));
   EXPECT_EQ(options->fit.model, "coulomb");
-  EXPECT_EQ(options->swing.release, SwingChoice::kLongest);
+  EXPECT_EQ(options->swing.release, SwingChoice::kMostTelling);
   EXPECT_FALSE(options->closed_form_only);
 }
 

@@ -7,12 +7,15 @@
 A cell is one or more causes. Each recording of the textbook rig has a size of each of them, drawn from the standard
 deviation that its user states with --sensor or in the rig; the other causes have none, which is stated too. In the cell
 `defaults` the user states nothing of the sensor, and all its causes are drawn from what is assumed for an angle sensor
-(src/docs/rigs_and_calibration.md); in the cell `clean` all is exact. Exit code 1 if a parameter of a cell has a share of 95 %
+(src/docs/rigs_and_calibration.md). In the cells `clean` all is exact but the noise, which differs, and in the cells `means`
+each row is the mean of some readings, which the file says. Exit code 1 if a parameter of a cell has a share of 95 %
 intervals with the truth outside COVERAGE by more than two standard deviations of such a count, or a root mean square of z
-below LEAST_Z, or if too many estimates have no error.
+below LEAST_Z, if too many estimates have no error, or if more than MOST_ALARMS of the clean recordings are doubted or have a
+cause named.
 """
 
 import collections
+import dataclasses
 import fnmatch
 import math
 import os
@@ -29,7 +32,7 @@ import judging  # noqa: E402
 import study  # noqa: E402
 from lab import RIG, Lab, textbook_lab  # noqa: E402
 from row_summary import LEAST_JUDGED, of_parameter  # noqa: E402
-from scenarios import ANGLE, DEG  # noqa: E402
+from scenarios import ANGLE, DEG, SHORT, TO_REST, set_bits, set_duration, set_mean, set_noise  # noqa: E402
 
 FIRST_SEED = 200_000
 COVERAGE = (0.93, 0.97)
@@ -44,12 +47,40 @@ ASSUMED = {"gain": 0.01, "nonlinearity": 0.25 * DEG, "lag": 0.012, "backlash": 0
 ASSUMED_CUBIC = 0.01  # of the amplitude
 # Those of a rig: kg, m, m/s^2.
 RIG_SIZES = {"bob_mass": 0.001, "rod_mass": 0.001, "rod_length": 0.001, "gravity": 0.015}
-CELLS = {"clean": (), **{name: (name,) for name in (*STATED, "rig")},
-         "gain, lag, clock": ("gain", "lag", "clock"),
-         "nonlinearity, backlash, drift": ("nonlinearity", "backlash", "drift"),
-         "rig, gain, drift": ("rig", "gain", "drift"),
-         "lag, nonlinearity, clock": ("lag", "nonlinearity", "clock"),
-         "defaults": tuple(ASSUMED)}
+MOST_ALARMS = 0.01
+QUIET = 0.1  # counts of noise; with less rounding hides the noise, and intervals may cover more
+
+
+@dataclasses.dataclass(frozen=True)
+class Cell:
+    """Causes whose sizes are drawn, or a change of clean recordings."""
+
+    causes: tuple[str, ...] = ()
+    change: collections.abc.Callable[[Lab], None] | None = None
+    is_clean: bool = False
+    highest: float = COVERAGE[1]
+
+
+def mean_cell(conversions: int, counts: float) -> Cell:
+    """Means of so many readings with noise of so many counts each."""
+    return Cell(change=lambda lab: set_mean(lab, conversions, counts, "count"), is_clean=True,
+                highest=1.0 if counts <= QUIET else COVERAGE[1])
+
+
+CHANGES = {"AR(1) 0.5": lambda lab: set_noise(lab, 0.25, 0.5), "AR(1) 0.9": lambda lab: set_noise(lab, 0.25, 0.9),
+           "AR(1) 0.5, 1 count": lambda lab: set_noise(lab, 1.0, 0.5), "AR(1) 0.9, 1 count": lambda lab: set_noise(lab, 1.0, 0.9),
+           "0.1 count": lambda lab: set_noise(lab, QUIET), "4 s": lambda lab: set_duration(lab, SHORT),
+           "to rest": lambda lab: set_duration(lab, TO_REST),
+           **{f"{bits} bits": lambda lab, bits=bits: set_bits(lab, bits) for bits in (8, 12, 14)}}
+CELLS = {"clean": Cell(is_clean=True), **{name: Cell((name,)) for name in (*STATED, "rig")},
+         "gain, lag, clock": Cell(("gain", "lag", "clock")),
+         "nonlinearity, backlash, drift": Cell(("nonlinearity", "backlash", "drift")),
+         "rig, gain, drift": Cell(("rig", "gain", "drift")),
+         "lag, nonlinearity, clock": Cell(("lag", "nonlinearity", "clock")),
+         "defaults": Cell(tuple(ASSUMED)),
+         **{f"clean, {name}": Cell(change=change, is_clean=True) for name, change in CHANGES.items()},
+         **{f"means of {conversions}, {counts} count": mean_cell(conversions, counts)
+            for conversions in (4, 16) for counts in (0, 0.1, 0.25, 0.5)}}
 
 
 def draw_sensor(lab: Lab, causes: tuple[str, ...], sizes: dict[str, float]) -> None:
@@ -78,12 +109,14 @@ def draw_rig(lab: Lab) -> None:
 
 def run(tool: pathlib.Path, cell: str, seed: int) -> judging.Outcome:
     """Simulates and fits one recording."""
-    lab, causes = textbook_lab(seed), CELLS[cell]
+    lab, causes, change = textbook_lab(seed), CELLS[cell].causes, CELLS[cell].change
     lab.rng = numpy.random.default_rng([seed, zlib.crc32(cell.encode())])
     is_stated = cell != "defaults"
     draw_sensor(lab, causes, STATED if is_stated else ASSUMED)
     if "rig" in causes:
         draw_rig(lab)
+    if change:
+        change(lab)
     sensor = judging.EXACT_SENSOR | {cause: STATED[cause] for cause in causes if cause in STATED} if is_stated else None
     return study.fit(tool, lab, "coulomb", ANGLE, sensor)
 
@@ -97,27 +130,30 @@ def summary(cell: str, outcomes: list[judging.Outcome]) -> dict:
     return {"cell": cell, "recordings": len(outcomes),
             "judged": sum(map(len, by_name.values())), "expected": sum(outcome.expected for outcome in outcomes),
             "named": sum(bool(outcome.all_causes) for outcome in outcomes),
+            "alarms": sum(outcome.is_doubted or bool(outcome.all_causes) for outcome in outcomes),
+            "codes": dict(collections.Counter(code for outcome in outcomes for code in (*outcome.codes, *outcome.causes))),
             "z": {name: of_parameter(by_name[name]) for name in ANGLE if by_name[name]}}
 
 
 def faults(found: dict) -> list[str]:
     """Why a cell does not pass; empty if it does."""
-    low, high = COVERAGE
-    faulty = []
+    cell, low, faulty = CELLS[found["cell"]], COVERAGE[0], []
     for name, each in found["z"].items():
         spread = 2 * math.sqrt(0.05 * 0.95 / each["judged"])
-        highest = 1 if name in MAY_COVER_MORE else high + spread
+        highest = 1 if name in MAY_COVER_MORE else cell.highest + spread
         if not low - spread <= each["coverage"] <= highest or each["rms"] < LEAST_Z:
             faulty.append(f"{name} covered {each['coverage']:.3f}, rms z {each['rms']:.2f}")
     if found["judged"] < LEAST_JUDGED * found["expected"]:
         faulty.append(f"{found['expected'] - found['judged']} of {found['expected']} without an error")
+    if cell.is_clean and found["alarms"] > MOST_ALARMS * found["recordings"]:
+        faulty.append(f"{found['alarms']} alarms")
     return faulty
 
 
 def line(found: dict) -> str:
     """A row of the printed table: coverage and rms z of each parameter."""
     numbers = "".join(f"{each['coverage']:7.3f} {each['rms']:5.2f}" for each in found["z"].values())
-    return f"{found['cell']:30}{found['named']:6} {numbers}  {'; '.join(faults(found)) or 'passes'}"
+    return f"{found['cell']:30}{found['named']:6}{found['alarms']:7} {numbers}  {'; '.join(faults(found)) or 'passes'}"
 
 
 def main() -> int:
@@ -130,7 +166,7 @@ def main() -> int:
     cells = [cell for cell in CELLS if any(fnmatch.fnmatch(cell, part) for part in arguments.cells.split(";"))]
     if not cells:
         parser.error(f"no cell matches {arguments.cells}; there are {'; '.join(CELLS)}")
-    print(f"{'cell':30}{'named':>6} " + "".join(f"{name[:12]:>13}" for name in ANGLE))
+    print(f"{'cell':30}{'named':>6}{'alarms':>7} " + "".join(f"{name[:12]:>13}" for name in ANGLE))
     rows = []
     with study.runner(arguments.jobs) as run_all:
         for cell in cells:

@@ -167,9 +167,10 @@ def has_error(parameter: dict | None) -> bool:
     return parameter is not None and (parameter["std_error"] is not None or parameter["interval95"] is not None)
 
 
-def fit(tool: pathlib.Path, folder: pathlib.Path, recording, model: str, parameters: tuple[str, ...],
-        sensor: dict | None = None, optional: tuple[str, ...] = ()) -> Outcome:
-    """Fits a recording in a folder as a user would, and judges the result. `sensor` is what the user states of it."""
+def run_tool(tool: pathlib.Path, folder: pathlib.Path, recording, model: str, sensor: dict | None = None
+             ) -> tuple[int, dict | None, str]:
+    """Fits a recording in a folder as a user would. `sensor` is what the user states of it. Returns the exit code, the result,
+    None if there is none, and the message."""
     (folder / "run.csv").write_text(recording.text, encoding="utf-8")
     (folder / "rig.json").write_text(json.dumps(recording.rig), encoding="utf-8")
     command = [str(tool), "--data", "run.csv", "--rig", "rig.json", "--model", model, "--json", "fit.json"]
@@ -181,8 +182,15 @@ def fit(tool: pathlib.Path, folder: pathlib.Path, recording, model: str, paramet
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, check=False)
     except subprocess.TimeoutExpired:
-        return Outcome(-1, len(parameters), message=f"no end after {TIMEOUT} s")
-    if not output.exists():
-        return Outcome(done.returncode, len(parameters), message=done.stderr.strip())
-    result = json.loads(output.read_text(encoding="utf-8"))
-    return judge_result(done.returncode, result, recording, parameters, done.stderr.strip(), optional)
+        return -1, None, f"no end after {TIMEOUT} s"
+    result = json.loads(output.read_text(encoding="utf-8")) if output.exists() else None
+    return done.returncode, result, done.stderr.strip()
+
+
+def fit(tool: pathlib.Path, folder: pathlib.Path, recording, model: str, parameters: tuple[str, ...],
+        sensor: dict | None = None, optional: tuple[str, ...] = ()) -> Outcome:
+    """Fits a recording with run_tool, and judges the result."""
+    exit_code, result, message = run_tool(tool, folder, recording, model, sensor)
+    if result is None:
+        return Outcome(exit_code, len(parameters), message=message)
+    return judge_result(exit_code, result, recording, parameters, message, optional)

@@ -289,7 +289,7 @@ TEST(MakeFitPendulumOptions, ReadsStandardInputOnce) {
 
 TEST(MakeFitPendulumOptions, AcceptsReleasesByNumberOrAll) {
   FitPendulumFlags flags = WithData();
-  EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kLongest);
+  EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kMostTelling);
   flags.release = "all";
   EXPECT_EQ(MakeFitPendulumOptions(flags)->swing.release, SwingChoice::kAll);
   flags.release = "3";

@@ -31,6 +31,7 @@ inline constexpr std::array kWarningKinds = {
     WarningKind{"incomplete_row"},
     WarningKind{"lost_samples", true},
     WarningKind{"many_spikes"},
+    WarningKind{"means_assumed"},
     WarningKind{"member_assumed"},
     WarningKind{"metadata_not_applied"},
     WarningKind{"notes_left_out"},

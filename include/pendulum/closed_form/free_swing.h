@@ -23,8 +23,10 @@ struct FreeSwing {
   double amplitude = 0;                ///< rad or rad/s: the largest distance of its turning points from their zero
   double amplitude_outside = 0;        ///< rad or rad/s: the same distance for turning points outside all free swings
   std::vector<double> turns;           ///< s, its turning points
+  std::vector<double> heights;         ///< rad or rad/s: between successive turning points; one less than `turns`
   WindowBegin begins;                  ///< Why it begins at `from`.
   WindowEnd ends;                      ///< Why it ends at `to`.
+  std::optional<LeftOut> left_out;     ///< Half swings of the free swing outside [from, to].
   double after_hold = 0;               ///< s, the first sample after its initial hold; `from` without a hold
   double hold_from = 0, hold_to = 0;   ///< s, a hold that is not steady, without the release; empty if they are equal.
   std::optional<Vibration> vibration;  ///< During all of the swing.

@@ -51,8 +51,20 @@ struct WindowEnd {
   double time = 0, gap_to = 0;  ///< s, file's clock
 };
 
+/// What a window leaves out of a free swing.
+struct LeftOut {
+  int half_swings = 0;      ///< At least one.
+  int all = 0;              ///< Half swings of the free swing.
+  bool is_largest = false;  ///< The largest half swing is among those left out.
+  double larger_errors =
+      1;  ///< So many times as large is the error of the period as with all, if the law held for all.
+};
+
 /// The reason in words, after "begins: " or "ends: "; empty for kUnknown.
 std::string Sentence(const WindowBegin& begin);
 std::string Sentence(const WindowEnd& end);
+
+/// What it costs in words, after "left out: ".
+std::string Sentence(const LeftOut& left_out);
 
 }  // namespace pendulum

@@ -39,6 +39,7 @@ struct DataSummary {
   double clock_scale_std_dev = 0;
   SensorErrors sensor;                          ///< What the sensor may do to the readings.
   std::string begins, ends;                     ///< Why the window begins and ends where it does; may be empty.
+  std::optional<LeftOut> left_out;              ///< What the window leaves out of its free swing.
   std::vector<std::array<double, 2>> releases;  ///< Begin and end of each free swing found [s].
   int release = 0;  ///< Number of the fitted free swing, from 1; 0: the user gave the window.
 

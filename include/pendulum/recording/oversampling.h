@@ -4,6 +4,8 @@
 #include <optional>
 #include <string_view>
 
+#include <Eigen/Core>
+
 #include "pendulum/recording/recording.h"
 
 namespace pendulum {
@@ -19,6 +21,12 @@ std::optional<AveragingWindow> ParseAveragingWindow(std::string_view text);
 /// The spacing of the values in which lost counts are whole numbers: a count of the converter if rows are means of its
 /// readings, otherwise the resolution. 0: none.
 double CountOf(const Recording& recording);
+
+/// How many readings a value seems to be the mean of, 1 if there is no sign of a mean. The mean of n readings that were
+/// rounded to whole counts is a multiple of 1/n count, but values gather at whole counts where noise is less than half
+/// a count, because there all readings round to the same side (MODEL.md eq. (7.12)). `step`: spacing of the values.
+/// Needs motion over many counts.
+int ReadingsPerMean(const Eigen::VectorXd& value, double step);
 
 /// Finds the levels of single readings from the resolution and the grid of the means, for a recording whose readings
 /// are n > 1: sets oversampling.count and .level, and the resolution to that of the means. If `has_counts`, the unit is

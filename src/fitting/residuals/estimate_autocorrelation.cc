@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -15,6 +16,7 @@
 
 #include "fitting/residuals/burg.h"
 #include "pendulum/base/median.h"
+#include "pendulum/fitting/likelihood/reading_information.h"
 #include "pendulum/fitting/residuals/residual_diagnostics.h"
 
 namespace pendulum {
@@ -301,20 +303,46 @@ Vertex BestMixed(const Surface& surface) {
   return Lowest(surface, best.place, 0.3);
 }
 
+/// The coordinates of an AR(1) with coefficient tanh(place) that has a share of the variance, the rest being
+/// white.
+Eigen::Vector2d DilutedPlace(double place, double share) {
+  const double phi = CoefficientFromUnbounded(place);
+  const double at_0 = share * (1 - phi * phi) + (1 - share) * (1 + phi * phi);  // autocovariances of z_t - φ z_{t-1}
+  const double at_1 = -(1 - share) * phi;
+  const double theta = 2 * at_1 / (at_0 + std::sqrt(at_0 * at_0 - 4 * at_1 * at_1));
+  return {place, std::atanh(theta)};
+}
+
+/// The likeliest AR(1) with this share; its `place` is that of `surface`.
+Vertex BestDiluted(const Surface& surface, double share, double from, double to) {
+  const Vertex best = LowestOnLine([&](double place) { return surface(DilutedPlace(place, share)); }, from, to);
+  return {DilutedPlace(best.place[0], share), best.height};
+}
+
 Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights,
-                             const std::stop_token& stop) {
+                             double visible_share, const std::stop_token& stop) {
   const double penalty = std::log(static_cast<double>(residual.size()));
   const double white = WhiteCriterion(residual);
   const Autoregression burg = BestAutoregression(clock, residual);
   if (burg.criterion >= 0 && LooksWhite(residual)) return {};
   const Eigen::MatrixXd column = residual;
-  const Vertex mixed = BestMixed(MixedSurface(clock, column, stop));
+  const Surface plain = MixedSurface(clock, column, stop);
+  const Vertex mixed = BestMixed(plain);
   const double gain = mixed.height + 2 * penalty - white;
-  if (std::min(burg.criterion, gain) >= 0 || stop.stop_requested()) return {};
+  constexpr double kDiluted = 0.95, kSteepest = 4;  // artanh of φ: 0.9993
+  Vertex diluted{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
+  if (visible_share < kDiluted) diluted = BestDiluted(plain, visible_share, -kSteepest, kSteepest);
+  const double diluted_gain = diluted.height + penalty - white;
+  if (std::min({burg.criterion, gain, diluted_gain}) >= 0 || stop.stop_requested()) return {};
+  const bool is_diluted = diluted_gain < std::min(gain, burg.criterion);
   const bool is_mixed = gain < burg.criterion;
-  if (!is_mixed && burg.reflection.size() > 1) return FromBurg(clock, burg.reflection);
+  if (!is_diluted && !is_mixed && burg.reflection.size() > 1) return FromBurg(clock, burg.reflection);
   const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
   const Surface restricted = MixedSurface(clock, columns, stop);
+  if (is_diluted) {
+    const double place = diluted.place[0];
+    return Mixed(clock, BestDiluted(restricted, visible_share, place - 1, place + 1).place);
+  }
   if (is_mixed) return Mixed(clock, Lowest(restricted, mixed.place, 0.1).place);
   const double place = std::atanh(burg.reflection[0]);
   const auto along = [&](double p) { return restricted({p, 0}); };
@@ -381,20 +409,40 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
   return Continuous(time, LowestWithoutWhite(restricted, pure.place[0] - 1, pure.place[0] + 1).place);
 }
 
+/// visible_share: of the autocorrelation of the noise, that which the residuals have.
+Autocorrelation EstimateAtAnyStamps(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
+                                    const Eigen::MatrixXd& weights, double visible_share, const std::stop_token& stop) {
+  constexpr Eigen::Index kMinSamples = 30;
+  if (residual.size() < kMinSamples || !(residual.squaredNorm() > 0)) return {};
+  const Clock clock = FindClock(time);
+  return clock.even ? EstimateEven(clock, residual, weights, visible_share, stop)
+                    : EstimateUneven(time, residual, weights, stop);
+}
+
+/// The share of the autocorrelation of rounded noise that its quantile residuals have (MODEL.md section 7,
+/// Autocorrelated residuals), on average over the place between two levels.
+double VisibleShare(const NoiseModel& noise) {
+  if (noise.family != NoiseFamily::kQuantized) return 1;
+  constexpr int kPlaces = 20;
+  double information = 0;
+  for (int k = 0; k < kPlaces; ++k) {
+    const double place = noise.resolution * (k + 0.5) / kPlaces;
+    information += ReadingInformation(place, noise.sigma, noise.resolution, std::nullopt)(0, 0) / kPlaces;
+  }
+  return std::pow(noise.sigma * noise.sigma * information, 2);
+}
+
 }  // namespace
 
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop) {
-  constexpr Eigen::Index kMinSamples = 30;
-  if (residual.size() < kMinSamples || !(residual.squaredNorm() > 0)) return {};
-  const Clock clock = FindClock(time);
-  return clock.even ? EstimateEven(clock, residual, weights, stop) : EstimateUneven(time, residual, weights, stop);
+  return EstimateAtAnyStamps(time, residual, weights, 1, stop);
 }
 
 Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
                                         const Eigen::MatrixXd& jacobian, const std::stop_token& stop) {
   const Eigen::VectorXd weight = noise.Deviations(jacobian.rows()).cwiseInverse();
-  return EstimateAutocorrelation(time, z, weight.asDiagonal() * jacobian, stop);
+  return EstimateAtAnyStamps(time, z, weight.asDiagonal() * jacobian, VisibleShare(noise), stop);
 }
 
 bool MayBeCorrelated(const Eigen::VectorXd& z) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pendulum/base/try.h"
+#include "pendulum/closed_form/swing_information.h"
 #include "pendulum/fitting/swing/clock_change.h"
 #include "pendulum/fitting/swing/undersampled.h"
 #include "pendulum/recording/window.h"
@@ -67,7 +68,8 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
     if (choice.release > 1) return NoSuchSwing(recording.path, choice.release, 1);
     return WithWarning(ChosenSwings{{WholeRecording(*part)}, {1}, {}}, change);
   }
-  if (from_given && to_given && choice.release == SwingChoice::kLongest) return ChosenSwings{{GivenSwing(*part)}, {1}};
+  if (from_given && to_given && choice.release == SwingChoice::kMostTelling)
+    return ChosenSwings{{GivenSwing(*part)}, {1}};
   Result<std::vector<FreeSwing>> found = FindFreeSwings(*part, choice.is_spring || (rig && rig->is_spring));
   if (!found) return Within(recording.path, found.error());
   ChosenSwings swings{*std::move(found), {}, {}};
@@ -77,18 +79,18 @@ Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice&
     for (int k = 1; k <= count; ++k) swings.chosen.push_back(k);
     return WithWarning(std::move(swings), change);
   }
-  const auto longest =
-      std::ranges::max_element(swings.found, {}, [](const FreeSwing& swing) { return swing.to - swing.from; });
+  const auto best = std::ranges::max_element(
+      swings.found, {}, [](const FreeSwing& swing) { return InformationOn(swing, swing.from, swing.to); });
   // If the user gave an end, the swing next to that end is chosen.
-  int k = from_given ? 1 : to_given ? count : static_cast<int>(longest - swings.found.begin()) + 1;
+  int k = from_given ? 1 : to_given ? count : static_cast<int>(best - swings.found.begin()) + 1;
   if (choice.release > 0) k = choice.release;
   FreeSwing& swing = swings.found[static_cast<std::size_t>(k - 1)];
-  if (from_given && choice.release == SwingChoice::kLongest) {
+  if (from_given && choice.release == SwingChoice::kMostTelling) {
     swing.from = part->time[0];
     swing.from_given = true;
     swing.begins = {WindowBegin::Reason::kAsked};
   }
-  if (to_given && choice.release == SwingChoice::kLongest) {
+  if (to_given && choice.release == SwingChoice::kMostTelling) {
     swing.to = part->time[part->size() - 1];
     swing.to_given = true;
     swing.ends = {WindowEnd::Reason::kAsked};

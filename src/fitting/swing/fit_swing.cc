@@ -20,6 +20,7 @@
 #include "pendulum/base/physics.h"
 #include "pendulum/base/rounding.h"
 #include "pendulum/base/try.h"
+#include "pendulum/closed_form/swing_information.h"
 #include "pendulum/fitting/solve/fit_problem.h"
 #include "pendulum/fitting/swing/lost_counts.h"
 #include "pendulum/fitting/swing/not_a_pendulum.h"
@@ -543,6 +544,7 @@ Result<SwingFit> FitSwing(Recording recording, FreeSwing swing, const FitOptions
     FitAsSpring(*std::move(original), swing, options, result);
   }
   if (options.stop.stop_requested()) return FitStopped();
+  result.swing.left_out = LeftOutOf(swing, result.swing.from, result.swing.to);
   return std::move(state.result);
 }
 

@@ -2,8 +2,10 @@
 #include "pendulum/fitting/residuals/estimate_autocorrelation.h"
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/fitting/residuals/residual_diagnostics.h"
 #include "tests/fitting/correlated_noise.h"
 
 namespace pendulum::estimate_autocorrelation_test {
@@ -121,6 +124,36 @@ TEST(EstimateAutocorrelation, FindsTheOrderOfAThirdOrderProcess) {
 }
 
 // ---- Autocorrelation ------------------------------------------------------------------------------------------------
+
+// Of AR(1) noise of a quarter count, rounded readings show the share 0.449 of the information, so 0.201 of its
+// correlations; the sum of those of the noise is 2 φ/(1 - φ).
+TEST(EstimateAutocorrelation, FindsTheHiddenPartOfTheCorrelationOfRoundedNoise) {
+  constexpr double kSigma = 0.25, kShare = 0.201;
+  constexpr Eigen::Index kSamples = 2000;
+  for (const double phi : {0.5, 0.8}) {
+    SCOPED_TRACE(phi);
+    const Summary summary = Summarize(40, [&](std::uint64_t seed) {
+      std::mt19937_64 generator(seed);
+      std::normal_distribution<double> normal(0, 1);
+      Eigen::VectorXd time(kSamples), swing(kSamples), reading(kSamples);
+      double noise = normal(generator);
+      for (Eigen::Index i = 0; i < kSamples; ++i) {
+        time[i] = 0.01 * static_cast<double>(i);
+        swing[i] = 120 * std::cos(4.8 * time[i]);
+        reading[i] = std::round(swing[i] + kSigma * noise);
+        noise = phi * noise + std::sqrt(1 - phi * phi) * normal(generator);
+      }
+      NoiseModel model;
+      model.family = NoiseFamily::kQuantized;
+      model.sigma = kSigma;
+      model.resolution = 1;
+      return EstimateAutocorrelation(model, time, QuantileResiduals(model, reading, swing),
+                                     Eigen::MatrixXd(kSamples, 0));
+    });
+    const double expected = 1 + kShare * 2 * phi / (1 - phi);
+    EXPECT_THAT(summary.inflation, DoubleNear(expected, 0.1 * expected));
+  }
+}
 
 TEST(EstimateAutocorrelation, RecoversAFirstOrderProcess) {
   for (const double phi : {0.5, 0.9, 0.98}) {

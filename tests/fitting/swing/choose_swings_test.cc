@@ -33,10 +33,11 @@ Recording OneAfterTheOther(const Recording& first, const Recording& second) {
   return both;
 }
 
-/// Released at 1.9 s and in free swing until 9 s; held again from 13 s on, released at 14.9 s, recorded until 28 s.
-Recording TwoReleases() {
+/// Released at 1.9 s and in free swing until 9 s; held again from 13 s on, released at 14.9 s from `angle` [rad],
+/// recorded until 28 s.
+Recording TwoReleases(double angle = 0.6) {
   SyntheticOptions second = NoisyRun("coulomb", 2);
-  second.release_angle = 0.6;
+  second.release_angle = angle;
   second.duration = 15;
   SyntheticOptions first = NoisyRun("coulomb", 1);
   first.duration = 9;
@@ -55,10 +56,14 @@ SwingChoice Between(double from, double to) { return {.from = from, .to = to}; }
 
 constexpr double kOpen = std::numeric_limits<double>::quiet_NaN();
 
-TEST(ChooseSwings, ChoosesTheLongestSwingByDefault) {
+TEST(ChooseSwings, ChoosesTheSwingThatTellsMostByDefault) {
   const ChosenSwings swings = Choose({});
   EXPECT_THAT(swings.found, SizeIs(2));
   EXPECT_THAT(swings.chosen, ElementsAre(2));
+  constexpr double kSmall = 0.1;  // rad; in the same noise its 13 s tell less than the 7 s of the first
+  const ChosenSwings beside_small = Must(ChooseSwings(TwoReleases(kSmall), {}));
+  EXPECT_THAT(beside_small.found, SizeIs(2));
+  EXPECT_THAT(beside_small.chosen, ElementsAre(1));
 }
 
 TEST(ChooseSwings, ChoosesTheRequestedSwingOrAll) {

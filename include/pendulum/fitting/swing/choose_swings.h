@@ -15,14 +15,14 @@ namespace pendulum {
 
 /// Which part of a recording to fit. Times are s on the file's clock.
 struct SwingChoice {
-  static constexpr int kLongest = 0;
+  static constexpr int kMostTelling = 0;
   static constexpr int kAll = -1;
 
   /// The window's first and last time; NaN: chosen from the data.
   double from = std::numeric_limits<double>::quiet_NaN();
   double to = std::numeric_limits<double>::quiet_NaN();
-  int release = kLongest;  ///< The k-th free swing (from 1), kLongest or kAll.
-  bool is_spring = false;  ///< The restoring torque is linear, so the angle may exceed 180 deg.
+  int release = kMostTelling;  ///< The k-th free swing (from 1), kMostTelling or kAll.
+  bool is_spring = false;      ///< The restoring torque is linear, so the angle may exceed 180 deg.
 };
 
 /// The free swings of a recording, and the numbers of the chosen swings.
@@ -33,7 +33,8 @@ struct ChosenSwings {
 };
 
 /// Finds the free swings and chooses among them. A bound given by the user is used as it is; if both are given and no
-/// release is chosen, there is no search. A recording sampled too slowly for a pendulum such as the rig's
+/// release is chosen, there is no search. Without a choice it is the swing with the most information on the period
+/// (InformationOn). A recording sampled too slowly for a pendulum such as the rig's
 /// (IsUndersampled) is one swing from end to end. kInvalidArgument: no swing with that number, or an empty window.
 /// kFailedPrecondition: as FindFreeSwings. kDataLoss: as CheckClock.
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,

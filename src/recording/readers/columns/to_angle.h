@@ -124,6 +124,31 @@ inline std::string WindowText(const AveragingWindow& window) {
   return NumberText(window.from) + "," + NumberText(window.to) + " s";
 }
 
+/// Takes rows for means if their values gather at the counts of single readings, and says so. A resolution that was
+/// stated must be that of single readings.
+inline void AssumeMeans(const Unit& unit, Recording& recording) {
+  const double step = recording.resolution_source == "found" ? recording.resolution : FindResolution(recording.value);
+  const int readings = ReadingsPerMean(recording.value, step);
+  if (readings == 1) return;
+  constexpr double kAlike = 0.1;
+  const double count = unit.name == "counts"                    ? 1
+                       : recording.resolution_source == "found" ? readings * step
+                                                                : recording.resolution;
+  if (std::abs(count / step - readings) > kAlike) return;
+  recording.oversampling.readings = readings;
+  const std::string n = std::to_string(readings);
+  recording.warnings.push_back({.code = "means_assumed",
+                                .finding = "every " + n +
+                                           "th of the values that are possible occurs much more often than " +
+                                           "the others, as in means of " + n + " readings that were rounded one by one",
+                                .explanation = "each row is taken for such a mean",
+                                .advice = "say it in the file (# oversample: " + n +
+                                          "), or give --oversample 1 if each "
+                                          "row is one reading",
+                                .flags = {"oversample"},
+                                .assumed = "rows that are means of " + n + " readings (--oversample)"});
+}
+
 /// Sets how rows are means of readings. The resolution is then that of the means, whether the file gives theirs or that
 /// of one reading.
 inline void SetOversampling(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
@@ -142,6 +167,7 @@ inline void SetOversampling(const Unit& unit, const ReadOptions& options, const 
       WarnOfAveraging("window_s", WindowText({from, to}), "# window_s: " + WindowText(*metadata.window), recording);
     }
   }
+  if (options.oversample == 0 && by_file == 0) AssumeMeans(unit, recording);
   FindCountLevels(unit.name == "counts", recording);
   if (oversampling.count > 0)
     std::erase_if(recording.warnings, [](const Warning& warning) { return warning.code == "resolution_disagrees"; });

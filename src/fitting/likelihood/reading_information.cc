@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pendulum/analysis/reading_information.h"
+#include "pendulum/fitting/likelihood/reading_information.h"
 
 #include <algorithm>
 #include <cmath>
