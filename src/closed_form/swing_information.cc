@@ -6,12 +6,20 @@
 #include <cstddef>
 
 namespace pendulum {
+namespace {
+
+/// When half swing i begins. The first turning point may be anywhere in a hold.
+double BeginOf(const FreeSwing& swing, std::size_t i) {
+  return i == 0 ? std::clamp(swing.after_hold, swing.turns[0], swing.turns[1]) : swing.turns[i];
+}
+
+}  // namespace
 
 double InformationOn(const FreeSwing& swing, double from, double to) {
   double weight = 0, first_moment = 0, second_moment = 0, within = 0;
   for (std::size_t i = 0; i < swing.heights.size(); ++i) {
-    const double duration = swing.turns[i + 1] - swing.turns[i];
-    const double middle = swing.turns[i] + 0.5 * duration;
+    const double duration = swing.turns[i + 1] - BeginOf(swing, i);
+    const double middle = BeginOf(swing, i) + 0.5 * duration;
     if (middle < from || middle > to) continue;
     const double time = middle - swing.turns.front();  // near 0, so that no digits are lost
     const double own = duration * swing.heights[i] * swing.heights[i];
@@ -27,7 +35,7 @@ std::optional<LeftOut> LeftOutOf(const FreeSwing& swing, double from, double to)
   LeftOut left_out;
   double largest_inside = 0, largest_outside = 0;
   for (std::size_t i = 0; i < swing.heights.size(); ++i) {
-    const double middle = 0.5 * (swing.turns[i] + swing.turns[i + 1]);
+    const double middle = 0.5 * (BeginOf(swing, i) + swing.turns[i + 1]);
     const bool is_inside = middle >= from && middle <= to;
     double& largest = is_inside ? largest_inside : largest_outside;
     largest = std::max(largest, swing.heights[i]);

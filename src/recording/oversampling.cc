@@ -8,6 +8,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <system_error>
 #include <vector>
 
@@ -74,12 +75,13 @@ struct Preference {
   double samples = 0;  ///< Effective number: by chance the square of the size is about 1/samples.
 };
 
-Preference PreferenceOf(const Eigen::VectorXi& steps, Eigen::Index lag, int n) {
+/// fastest: values that move further count as 0, because in fast motion the readings of a mean differ.
+Preference PreferenceOf(const Eigen::VectorXi& steps, Eigen::Index lag, int n, int fastest) {
   std::vector<double> of_residue(static_cast<std::size_t>(n), 0.0);  // how far values with it have moved
   double all = 0, squares = 0;
   for (Eigen::Index i = lag; i + lag < steps.size(); ++i) {
     const int moved = std::abs(steps[i + lag] - steps[i - lag]);
-    if (moved < n) continue;  // at a turning point, or at rest
+    if (moved < n || moved > fastest) continue;  // at a turning point, or at rest
     of_residue[static_cast<std::size_t>(steps[i] % n)] += moved;
     all += moved;
     squares += static_cast<double>(moved) * moved;
@@ -102,7 +104,8 @@ int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
   constexpr double kMostSteps = 1e9;
   constexpr double kClear = 0.18;  // size of the preference
   constexpr double kAsMuch = 0.9;
-  constexpr double kSignificant = 25;  // its square times the samples: 1e-11 by chance
+  constexpr double kSignificant = 20;  // its square times the samples: 2e-9 by chance
+  constexpr int kSlow = 4;             // counts
   if (!(step > 0) || value.size() == 0) return 1;
   const auto part = value.head(std::min(value.size(), kMostSamples)).array();
   const double lowest = part.minCoeff();
@@ -113,10 +116,11 @@ int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
   double largest = kClear / kAsMuch;
   for (const int n : kNumbers) {
     if (span < kCounts * n) break;
-    Preference preference;
-    for (Eigen::Index lag = 1; lag <= 16 && preference.samples * kClear * kClear < kSignificant; lag *= 4) {
-      const Preference next = PreferenceOf(steps, lag, n);
-      if (next.samples > preference.samples) preference = next;
+    Preference preference = PreferenceOf(steps, 1, n, std::numeric_limits<int>::max());
+    for (Eigen::Index lag = 1; lag <= 16; lag *= 4) {
+      const Preference slow = PreferenceOf(steps, lag, n, kSlow * n);
+      const bool is_clear = slow.samples * slow.size * slow.size >= kSignificant;
+      if (is_clear && slow.size > preference.size) preference = slow;
     }
     // Without noise divisors of n are preferred as much.
     if (preference.size < kAsMuch * largest || preference.samples * preference.size * preference.size < kSignificant)

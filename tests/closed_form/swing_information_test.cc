@@ -66,6 +66,13 @@ TEST(LeftOutOf, CostsWhatLeastSquaresSayOfTheFrequency) {
   }
 }
 
+TEST(LeftOutOf, DoesNotCountAHold) {
+  FreeSwing swing = Decaying(0.1, 10);
+  swing.turns.front() -= 2;  // somewhere in a hold of some seconds
+  swing.after_hold = 3;
+  EXPECT_FALSE(LeftOutOf(swing, 3.05, swing.turns.back()));
+}
+
 TEST(LeftOutOf, IsNothingForTheWholeSwingOrAnother) {
   const FreeSwing swing = Decaying(0.1, 10);
   EXPECT_FALSE(LeftOutOf(swing, swing.turns.front(), swing.turns.back()));

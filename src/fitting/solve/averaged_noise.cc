@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <vector>
@@ -94,6 +95,22 @@ void TrySigmas(const SomeSamples& some, const NoiseModel& noise, std::span<const
   }
 }
 
+/// Improves the length of the window by bisection between the lengths on both sides of the best one.
+void RefineWindow(const SomeSamples& some, const NoiseModel& noise, const std::vector<double>& windows,
+                  Candidate& best) {
+  constexpr int kRounds = 3;
+  const auto at = std::ranges::find(windows, best.window);
+  double below = at == windows.begin() ? *at : *std::prev(at);
+  double above = std::next(at) == windows.end() ? *at : *std::next(at);
+  for (int round = 0; round < kRounds; ++round) {
+    const double former = best.window, low = 0.5 * (below + former), high = 0.5 * (former + above);
+    const std::array sigmas = {0.8 * best.sigma, best.sigma, 1.25 * best.sigma};
+    for (const double length : {low, high}) TrySigmas(some, noise, sigmas, {best.level, length, 0, -kInfinity}, best);
+    if (best.window != high) above = best.window == low ? former : high;
+    if (best.window != low) below = best.window == high ? former : low;
+  }
+}
+
 double MedianInterval(const std::vector<double>& time) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
@@ -148,6 +165,7 @@ NoiseModel LikeliestAveraging(const TrajectoryCost& cost, const FitProblem& prob
   }
   best.log = -kInfinity;
   for (const double length : windows) TrySigmas(some, noise, kSigmas, {best.level, length, 0, -kInfinity}, best);
+  if (windows.size() > 1) RefineWindow(some, noise, windows, best);
   const double readings = noise.averaging.readings;
   const std::array normal = {std::sqrt(std::max(readings * rms * rms - 1.0 / 12, kContinuousSigma * kContinuousSigma))};
   TrySigmas(some, noise, normal, best, best);
