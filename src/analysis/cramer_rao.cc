@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "pendulum/fitting/likelihood/reading_information.h"
 #include "pendulum/fitting/likelihood/edge_noise.h"
+#include "pendulum/fitting/likelihood/reading_information.h"
 #include "pendulum/fitting/likelihood/trajectory_cost.h"
 
 namespace pendulum {

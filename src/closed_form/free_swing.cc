@@ -68,10 +68,14 @@ FreeSwing MakeSwing(const Recording& recording, const TurningPointTable& table, 
   swing.begins = beginning.why;
   swing.ends = ending.why;
   swing.half_period = table.half_period;
+  using enum WindowBegin::Reason;
+  const bool is_after_fall = beginning.why.reason == kAfterFall || beginning.why.reason == kAfterTurns;
+  const std::size_t first = run.first + (is_after_fall ? 1 : 0);  // the fall is no half swing
   for (std::size_t i = run.first; i <= run.last; ++i) {
-    if (i > run.first) swing.heights.push_back(std::abs(table.points[i].value - table.points[i - 1].value));
-    swing.turns.push_back(table.points[i].time);
     swing.amplitude = std::max(swing.amplitude, table.Amplitude(i));
+    if (i < first) continue;
+    if (i > first) swing.heights.push_back(std::abs(table.points[i].value - table.points[i - 1].value));
+    swing.turns.push_back(table.points[i].time);
   }
   return swing;
 }

@@ -25,7 +25,7 @@ std::string Sentence(const WindowBegin& begin) {
     case kAfterDrive: return "after a drive that kept the amplitude; --from 0 fits that too";
     case kAfterVibration:
       return "after a faster vibration of " + NumberText(begin.frequency_hz, 2) + " Hz has died away";
-    case kDisturbed: return "the motion before does not fit: touched, or another law";
+    case kDisturbed: return "the motion before does not fit: a touch, or another law";
     case kUndersampled: return "sampled too slowly to see half swings: the whole recording";
     case kUndersampledAfterFirst:
       return "sampled too slowly to see half swings: the whole recording, without the first reading, at which it may "
@@ -47,7 +47,7 @@ std::string Sentence(const WindowEnd& end) {
       return "a gap of " + NumberText(end.gap_to - end.time, 3) + " s follows, which hides too many swings to bridge";
     case kBeforeMove: return "last turning point before the pendulum is moved";
     case kBeforeStop: return "last turning point before the pendulum is stopped";
-    case kDisturbed: return "the motion after does not fit: touched, or another law";
+    case kDisturbed: return "the motion after does not fit: a touch, or another law";
     case kPresliding: return "smaller swings are faster: friction acts like a spring before it slides";
     case kNotConverging: return "with the motion after it the fit does not converge";
     case kCountsLost: return "an unknown number of counts was lost after it";
@@ -62,7 +62,8 @@ std::string Sentence(const LeftOut& left_out) {
                            : left_out.half_swings == 1 ? "the largest of " + all
                                                        : count + " of " + all + ", also the largest";
   const double errors = left_out.larger_errors;
-  return what + ": errors " + (errors < kMatters ? "hardly change" : "× " + NumberText(errors, 2));
+  return what + ": " +
+         (errors < kMatters ? "the period's error hardly changes" : "the period's error × " + NumberText(errors, 2));
 }
 
 }  // namespace pendulum

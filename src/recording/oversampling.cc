@@ -78,11 +78,13 @@ struct Preference {
 /// fastest: values that move further count as 0, because in fast motion the readings of a mean differ.
 Preference PreferenceOf(const Eigen::VectorXi& steps, Eigen::Index lag, int n, int fastest) {
   std::vector<double> of_residue(static_cast<std::size_t>(n), 0.0);  // how far values with it have moved
+  std::vector<bool> is_passed(static_cast<std::size_t>(steps.maxCoeff() / n) + 1, false);  // counts
   double all = 0, squares = 0;
   for (Eigen::Index i = lag; i + lag < steps.size(); ++i) {
     const int moved = std::abs(steps[i + lag] - steps[i - lag]);
     if (moved < n || moved > fastest) continue;  // at a turning point, or at rest
     of_residue[static_cast<std::size_t>(steps[i] % n)] += moved;
+    is_passed[static_cast<std::size_t>(steps[i] / n)] = true;
     all += moved;
     squares += static_cast<double>(moved) * moved;
   }
@@ -91,21 +93,35 @@ Preference PreferenceOf(const Eigen::VectorXi& steps, Eigen::Index lag, int n, i
   for (int residue = 0; residue < n; ++residue) {
     sum += std::polar(of_residue[static_cast<std::size_t>(residue)], 2 * kPi * residue / n);
   }
-  return {std::abs(sum) / all, all * all / squares / static_cast<double>(lag)};
+  // A slowly decaying swing shows the same values in each period.
+  const auto passed = static_cast<double>(std::ranges::count(is_passed, true));
+  return {std::abs(sum) / all, std::min(all * all / squares / static_cast<double>(lag), passed)};
+}
+
+/// The largest size of a preference that chance does not explain, of all motion or of slow motion; 0 if there is none.
+double ClearPreference(const Eigen::VectorXi& steps, int n) {
+  constexpr double kSignificant = 20;  // its square times the samples: 2e-9 by chance
+  constexpr int kSlow = 4;             // counts
+  double largest = 0;
+  const auto consider = [&](const Preference& preference) {
+    if (preference.samples * preference.size * preference.size < kSignificant) return;
+    largest = std::max(largest, preference.size);
+  };
+  consider(PreferenceOf(steps, 1, n, std::numeric_limits<int>::max()));
+  for (Eigen::Index lag = 1; lag <= 16; lag *= 4) consider(PreferenceOf(steps, lag, n, kSlow * n));
+  return largest;
 }
 
 }  // namespace
 
 int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
   // Two are left out: rows that were interpolated between others look like means of two.
-  constexpr std::array kNumbers = {3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 32, 50, 64};
+  constexpr std::array kNumbers = {3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 20, 24, 25, 30, 32, 40, 48, 50, 60, 64};
   constexpr Eigen::Index kMostSamples = 20000;
   constexpr double kCounts = 20;  // that the motion must span
-  constexpr double kMostSteps = 1e9;
+  constexpr double kMostSteps = 1e7;
   constexpr double kClear = 0.18;  // size of the preference
-  constexpr double kAsMuch = 0.9;
-  constexpr double kSignificant = 20;  // its square times the samples: 2e-9 by chance
-  constexpr int kSlow = 4;             // counts
+  constexpr double kAsMuch = 0.9;  // of the largest one: without noise divisors of n are preferred as much
   if (!(step > 0) || value.size() == 0) return 1;
   const auto part = value.head(std::min(value.size(), kMostSamples)).array();
   const double lowest = part.minCoeff();
@@ -116,17 +132,10 @@ int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
   double largest = kClear / kAsMuch;
   for (const int n : kNumbers) {
     if (span < kCounts * n) break;
-    Preference preference = PreferenceOf(steps, 1, n, std::numeric_limits<int>::max());
-    for (Eigen::Index lag = 1; lag <= 16; lag *= 4) {
-      const Preference slow = PreferenceOf(steps, lag, n, kSlow * n);
-      const bool is_clear = slow.samples * slow.size * slow.size >= kSignificant;
-      if (is_clear && slow.size > preference.size) preference = slow;
-    }
-    // Without noise divisors of n are preferred as much.
-    if (preference.size < kAsMuch * largest || preference.samples * preference.size * preference.size < kSignificant)
-      continue;
+    const double size = ClearPreference(steps, n);
+    if (size < kAsMuch * largest) continue;
     likeliest = n;
-    largest = std::max(largest, preference.size);
+    largest = std::max(largest, size);
   }
   return likeliest;
 }

@@ -373,8 +373,8 @@ std::vector<RunFlag> MakeTable() {
        .needs_fit = true},
       {.name = "release",
        .value = &RunFlags::release,
-       .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the largest and "
-               "longest: the one that determines the period best.",
+       .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the "
+               "one that determines the period best, by its length and size.",
        .label = "Which free swing",
        .schema = {{"type", "integer"}, {"minimum", 1}}},
       {.name = "from",
@@ -462,7 +462,7 @@ std::vector<RunFlag> MakeTable() {
       {.name = "oversample",
        .value = &RunFlags::oversample,
        .help = "Number of readings of the converter whose mean a row is, 1 to 64; default the value in the file's line "
-               "# oversample, or 1.",
+               "# oversample; without it as the values show (means_assumed), or 1.",
        .label = "Readings in a mean",
        .schema = {{"type", "integer"}, {"minimum", 1}, {"maximum", kMostOversampling}}},
       {.name = "window_s",

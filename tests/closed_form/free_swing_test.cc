@@ -175,6 +175,8 @@ TEST(FindFreeSwings, BeginsAtTheNextTurningPointAfterAReleaseNearTheUpright) {
             "after the fall from 170 deg: so near the top the smallest push determines when it falls, so the release "
             "is not used");
   EXPECT_THAT(swing.from, AllOf(Ge(2 + kHalfPeriod), Le(2 + 4 * kHalfPeriod)));  // half a period from 165 deg: 1.7 s
+  EXPECT_THAT(swing.turns.front(), DoubleNear(swing.from, 0.02));
+  EXPECT_EQ(swing.heights.size() + 1, swing.turns.size());
   const double lower = 160 * kRadFromDeg;
   EXPECT_EQ(Sentence(OnlySwing(Joined({Still(lower, 2), Swing(lower, 20)})).begins), kHeld);
 }

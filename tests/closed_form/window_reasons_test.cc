@@ -32,9 +32,9 @@ TEST(Sentence, GivesAngleAndTime) {
 }
 
 TEST(Sentence, SaysWhatAWindowCosts) {
-  EXPECT_EQ(Sentence(LeftOut{12, 47, true, 1.812}), "12 of 47 half swings, also the largest: errors × 1.8");
-  EXPECT_EQ(Sentence(LeftOut{1, 47, true, 1.2}), "the largest of 47 half swings: errors × 1.2");
-  EXPECT_EQ(Sentence(LeftOut{3, 47, false, 1.01}), "3 of 47 half swings: errors hardly change");
+  EXPECT_EQ(Sentence(LeftOut{12, 47, true, 1.812}), "12 of 47 half swings, also the largest: the period's error × 1.8");
+  EXPECT_EQ(Sentence(LeftOut{1, 47, true, 1.2}), "the largest of 47 half swings: the period's error × 1.2");
+  EXPECT_EQ(Sentence(LeftOut{3, 47, false, 1.01}), "3 of 47 half swings: the period's error hardly changes");
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/recording/oversampling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
+#include <string_view>
+#include <tuple>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
@@ -50,7 +53,7 @@ Eigen::VectorXd Means(int n, double sigma, std::uint64_t seed) {
 }
 
 TEST(ReadingsPerMean, FindsHowManyReadingsAMeanHas) {
-  for (const int n : {4, 8, 10, 16, 32}) {
+  for (const int n : {4, 8, 9, 10, 16, 24, 32, 48}) {
     for (const double sigma : {0.0, 0.05, 0.1, 0.25}) {
       SCOPED_TRACE("means of " + std::to_string(n) + ", noise of " + std::to_string(sigma));
       for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(ReadingsPerMean(Means(n, sigma, seed), 1.0 / n), n);
@@ -58,15 +61,60 @@ TEST(ReadingsPerMean, FindsHowManyReadingsAMeanHas) {
   }
 }
 
-// With more noise rounding averages out, so that nothing depends on the number.
 TEST(ReadingsPerMean, FindsNothingInSingleReadings) {
   for (const double sigma : {0.0, 0.05, 0.1, 0.25, 0.5, 2.0}) {
     SCOPED_TRACE(sigma);
     for (std::uint64_t seed = 1; seed <= 100; ++seed) EXPECT_EQ(ReadingsPerMean(Means(1, sigma, seed), 1), 1);
   }
+  // With more noise rounding averages out, so that nothing depends on the number.
   EXPECT_EQ(ReadingsPerMean(Means(16, 0.6, 1), 1.0 / 16), 1);
   EXPECT_EQ(ReadingsPerMean(Eigen::VectorXd(), 1), 1);
   EXPECT_EQ(ReadingsPerMean(Eigen::VectorXd::Constant(500, 3), 0), 1);
+}
+
+std::string MeansFile(const std::string& head, const std::string& column, double scale) {
+  const Eigen::VectorXd value = Means(4, 0.1, 1);
+  std::string text = head + "time_s," + column + "\n";
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    text += std::to_string(0.01 * static_cast<double>(i)) + "," + std::to_string(scale * value[i]) + "\n";
+  }
+  return text;
+}
+
+bool Has(const Recording& recording, std::string_view code) {
+  return std::ranges::any_of(recording.warnings, [&](const Warning& warning) { return warning.code == code; });
+}
+
+TEST(ReadRecording, AssumesMeansThatNobodyStated) {
+  for (const auto& [head, column, scale] :
+       {std::tuple("", "adc_counts", 1.0), std::tuple("# resolution: 0.2\n", "angle_deg", 0.2)}) {
+    SCOPED_TRACE(std::string(head) + column);
+    const auto recording = ParseRecording(MeansFile(head, column, scale), "run.csv");
+    ASSERT_TRUE(recording) << recording.error().message();
+    EXPECT_TRUE(Has(*recording, "means_assumed"));
+    EXPECT_EQ(recording->oversampling.readings, 4);
+    EXPECT_NEAR(recording->oversampling.count / recording->resolution, 4, 1e-9);
+    for (const Warning& warning : recording->warnings) EXPECT_NE(warning.code, "resolution_disagrees");
+  }
+}
+
+TEST(ReadRecording, SaysThatRowsMayBeMeansIfTheCountIsUnknown) {
+  const auto recording = ParseRecording(MeansFile("", "angle_deg", 0.2), "run.csv");
+  ASSERT_TRUE(recording) << recording.error().message();
+  EXPECT_TRUE(Has(*recording, "means_possible"));
+  EXPECT_EQ(recording->oversampling.readings, 1);
+}
+
+TEST(ReadRecording, TakesRowsForSingleReadingsIfAsked) {
+  ReadOptions options;
+  options.oversample = 1;
+  const auto recording = ParseRecording(MeansFile("", "adc_counts", 1), "run.csv", options);
+  ASSERT_TRUE(recording) << recording.error().message();
+  EXPECT_FALSE(Has(*recording, "means_assumed"));
+  EXPECT_EQ(recording->oversampling.readings, 1);
+  const auto stated = ParseRecording(MeansFile("# oversample: 4\n", "adc_counts", 1), "run.csv");
+  ASSERT_TRUE(stated) << stated.error().message();
+  EXPECT_FALSE(Has(*stated, "means_assumed"));
 }
 
 /// A swing of 30 counts read four times each, with readings that differ by one count now and then.

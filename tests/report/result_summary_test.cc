@@ -68,6 +68,13 @@ TEST(SummarizeFit, NamesTwoSourcesIfNeitherIsMost) {
   EXPECT_EQ(Find(SummarizeFit(identification, 0).parameters, "viscous").source, "clock, noise");
 }
 
+TEST(SummarizeFit, SaysWhatTheWindowLeavesOut) {
+  Identification identification = ExampleIdentification();
+  identification.recordings.front().data.left_out = LeftOut{12, 47, true, 1.8};
+  EXPECT_THAT(SummarizeResult(identification).data,
+              HasSubstr(" Left out: 12 of 47 half swings, also the largest: the period's error × 1.8."));
+}
+
 TEST(SummarizeFit, SaysWhyThereIsNoError) {
   const FitSummary summary = SummarizeFit(ExampleIdentification(), 0);
   EXPECT_EQ(Find(summary.parameters, "coulomb").source, "at its bound");

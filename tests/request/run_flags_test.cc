@@ -51,7 +51,7 @@ TEST(RunFlagTable, HasOnlyFlagsThatChangeTheStoredOptions) {
   }
 }
 
-TEST(MakeIdentifyOptions, FitsCoulombToTheLongestSwingByDefault) {
+TEST(MakeIdentifyOptions, FitsCoulombToTheMostTellingSwingByDefault) {
   const auto options = MakeIdentifyOptions({});
   ASSERT_TRUE(options);
   EXPECT_THAT(options->models, ElementsAre("coulomb"));

@@ -7,7 +7,7 @@
 A cell is one or more causes. Each recording of the textbook rig has a size of each of them, drawn from the standard
 deviation that its user states with --sensor or in the rig; the other causes have none, which is stated too. In the cell
 `defaults` the user states nothing of the sensor, and all its causes are drawn from what is assumed for an angle sensor
-(src/docs/rigs_and_calibration.md). In the cells `clean` all is exact but the noise, which differs, and in the cells `means`
+(src/docs/rigs_and_calibration.md). In the cells `clean` all is exact; noise, length and resolution differ. In the cells `means`
 each row is the mean of some readings, which the file says. Exit code 1 if a parameter of a cell has a share of 95 %
 intervals with the truth outside COVERAGE by more than two standard deviations of such a count, or a root mean square of z
 below LEAST_Z, if too many estimates have no error, or if more than MOST_ALARMS of the clean recordings are doubted or have a
@@ -48,7 +48,7 @@ ASSUMED_CUBIC = 0.01  # of the amplitude
 # Those of a rig: kg, m, m/s^2.
 RIG_SIZES = {"bob_mass": 0.001, "rod_mass": 0.001, "rod_length": 0.001, "gravity": 0.015}
 MOST_ALARMS = 0.01
-QUIET = 0.1  # counts of noise; with less rounding hides the noise, and intervals may cover more
+QUIET = 0.1  # counts of noise; of means with no more, rounding hides the noise, and intervals may cover more
 
 
 @dataclasses.dataclass(frozen=True)

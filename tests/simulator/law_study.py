@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Counts how often `fit_pendulum --model all` recommends a law, and which, for recordings whose only fault is noise.
+"""Counts how often `fit_pendulum --model all` recommends a law, and which, for recordings without faults.
 
   law_study.py BIN_DIR [--count 200] [--jobs 2] [--cells 'coulomb*'] [--json OUT.json]
 
-A cell is a true law and a noise. The laws are those of the textbook rig: `viscous` without dry friction, `coulomb`, and `drag`
+A cell is a true law and a kind of noise, length or resolution. The laws are those of the textbook rig: `viscous` without dry friction, `coulomb`, and `drag`
 with quadratic drag of 0.002. The user states G and a sensor without faults. Exit code 1 if a law is recommended in fewer than
 95 % of the recordings of a cell, or if more than 5 % of its recommendations are a law with a term that the true law does not have.
 """
@@ -30,16 +30,16 @@ LEAST_RECOMMENDED = 0.95
 LAWS = {"viscous": {"coulomb": 0.0}, "coulomb": {}, "drag": {"drag": 0.002}}
 MOST_WRONG = 0.05
 SIMPLER = {"viscous": {"viscous"}, "coulomb": {"viscous", "coulomb"}, "drag": {"viscous", "coulomb", "drag"}}
-NOISES = {"white": lambda lab: None, **CHANGES}
-CELLS = {f"{law}, {noise}": (law, noise) for law, noise in itertools.product(LAWS, NOISES)}
+CONDITIONS = {"white": lambda lab: None, **CHANGES}
+CELLS = {f"{law}, {condition}": (law, condition) for law, condition in itertools.product(LAWS, CONDITIONS)}
 
 
 def drawn(cell: str, seed: int) -> Lab:
     """The rig of one recording."""
-    law, noise = CELLS[cell]
+    law, condition = CELLS[cell]
     lab = textbook_lab(seed)
     lab.set_friction(**LAWS[law])
-    NOISES[noise](lab)
+    CONDITIONS[condition](lab)
     return lab
 
 

@@ -119,7 +119,7 @@ def run(tool: pathlib.Path, rate: float, seed: int) -> tuple[int, judging.Outcom
 def summary(fits: list[tuple[int, judging.Outcome, dict[str, float]]]) -> dict:
     """What the recordings of one rate say together."""
     ended = [outcome for _, outcome, _ in fits if outcome.exit_code == 0]
-    over_least = {name: statistics.median(longer[name] for _, _, longer in fits if name in longer)
+    over_least = {name: finite(statistics.median(longer[name] for _, _, longer in fits if name in longer), 3)
                   for name in PLACES if any(name in longer for _, _, longer in fits)}
     judged = {name: [outcome.judged[name] for outcome in ended if name in outcome.judged] for name in (*ALWAYS, *FRICTION)}
     return {"recordings": len(fits), "exit_codes": dict(collections.Counter(each.exit_code for _, each, _ in fits)),
@@ -129,7 +129,7 @@ def summary(fits: list[tuple[int, judging.Outcome, dict[str, float]]]) -> dict:
             "without": [{"seed": seed, "message": outcome.message} for seed, outcome, _ in fits if outcome.exit_code],
             "doubted": sum(outcome.is_doubted for outcome in ended),
             "codes": dict(collections.Counter(code for outcome in ended for code in (*outcome.codes, *outcome.causes))),
-            "parameters": {name: of_parameter(of_name) | {"over_least": finite(over_least[name], 3)}
+            "parameters": {name: of_parameter(of_name) | {"over_least": over_least.get(name, 0.0)}
                            for name, of_name in judged.items() if of_name}}
 
 

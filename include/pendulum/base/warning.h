@@ -32,6 +32,7 @@ inline constexpr std::array kWarningKinds = {
     WarningKind{"lost_samples", true},
     WarningKind{"many_spikes"},
     WarningKind{"means_assumed"},
+    WarningKind{"means_possible"},
     WarningKind{"member_assumed"},
     WarningKind{"metadata_not_applied"},
     WarningKind{"notes_left_out"},

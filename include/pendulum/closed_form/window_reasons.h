@@ -56,8 +56,8 @@ struct LeftOut {
   int half_swings = 0;      ///< At least one.
   int all = 0;              ///< Half swings of the free swing.
   bool is_largest = false;  ///< The largest half swing is among those left out.
-  double larger_errors =
-      1;  ///< So many times as large is the error of the period as with all, if the law held for all.
+  /// Error of the period divided by its error with all half swings, if the law held for all.
+  double larger_errors = 1;
 };
 
 /// The reason in words, after "begins: " or "ends: "; empty for kUnknown.

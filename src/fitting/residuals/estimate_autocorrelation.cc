@@ -197,10 +197,10 @@ double LargestScore(const Eigen::VectorXd& residual) {
   return (product.square() / energy).maxCoeff() * static_cast<double>(residual.size()) / residual.squaredNorm();
 }
 
-/// Whether a model with two more parameters than white residuals cannot gain as much likelihood as Schwarz's criterion
+/// Whether a model with more parameters than white residuals cannot gain as much likelihood as Schwarz's criterion
 /// requires. Half of the required gain is used, as a margin for the error of the scores.
-bool LooksWhite(const Eigen::VectorXd& residual) {
-  return LargestScore(residual) < std::log(static_cast<double>(residual.size()));
+bool LooksWhite(const Eigen::VectorXd& residual, int parameters) {
+  return LargestScore(residual) < 0.5 * parameters * std::log(static_cast<double>(residual.size()));
 }
 
 /// Deviance as a function of two parameters.
@@ -321,17 +321,19 @@ Vertex BestDiluted(const Surface& surface, double share, double from, double to)
 
 Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights,
                              double visible_share, const std::stop_token& stop) {
+  constexpr double kRounded = 0.95;
   const double penalty = std::log(static_cast<double>(residual.size()));
   const double white = WhiteCriterion(residual);
   const Autoregression burg = BestAutoregression(clock, residual);
-  if (burg.criterion >= 0 && LooksWhite(residual)) return {};
+  const bool is_rounded = visible_share < kRounded;
+  if (burg.criterion >= 0 && LooksWhite(residual, is_rounded ? 1 : 2)) return {};
   const Eigen::MatrixXd column = residual;
   const Surface plain = MixedSurface(clock, column, stop);
   const Vertex mixed = BestMixed(plain);
   const double gain = mixed.height + 2 * penalty - white;
-  constexpr double kDiluted = 0.95, kSteepest = 4;  // artanh of φ: 0.9993
+  constexpr double kSteepest = 4;  // artanh of φ: 0.9993
   Vertex diluted{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
-  if (visible_share < kDiluted) diluted = BestDiluted(plain, visible_share, -kSteepest, kSteepest);
+  if (is_rounded) diluted = BestDiluted(plain, visible_share, -kSteepest, kSteepest);
   const double diluted_gain = diluted.height + penalty - white;
   if (std::min({burg.criterion, gain, diluted_gain}) >= 0 || stop.stop_requested()) return {};
   const bool is_diluted = diluted_gain < std::min(gain, burg.criterion);
@@ -394,7 +396,7 @@ Vertex BestWithWhite(const Surface& surface, double interval) {
 
 Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                const Eigen::MatrixXd& weights, const std::stop_token& stop) {
-  if (LooksWhite(residual)) return {};
+  if (LooksWhite(residual, 2)) return {};
   const double penalty = std::log(static_cast<double>(residual.size()));
   const Eigen::MatrixXd column = residual;
   const Surface plain = ContinuousSurface(time, column, stop);

@@ -103,11 +103,20 @@ void RefineWindow(const SomeSamples& some, const NoiseModel& noise, const std::v
   double below = at == windows.begin() ? *at : *std::prev(at);
   double above = std::next(at) == windows.end() ? *at : *std::next(at);
   for (int round = 0; round < kRounds; ++round) {
-    const double former = best.window, low = 0.5 * (below + former), high = 0.5 * (former + above);
+    const double middle = best.window;
+    const double lower = 0.5 * (below + middle), higher = 0.5 * (middle + above);
     const std::array sigmas = {0.8 * best.sigma, best.sigma, 1.25 * best.sigma};
-    for (const double length : {low, high}) TrySigmas(some, noise, sigmas, {best.level, length, 0, -kInfinity}, best);
-    if (best.window != high) above = best.window == low ? former : high;
-    if (best.window != low) below = best.window == high ? former : low;
+    for (const double length : {lower, higher}) {
+      TrySigmas(some, noise, sigmas, {best.level, length, 0, -kInfinity}, best);
+    }
+    if (best.window < middle) {
+      above = middle;
+    } else if (best.window > middle) {
+      below = middle;
+    } else {
+      below = lower;
+      above = higher;
+    }
   }
 }
 

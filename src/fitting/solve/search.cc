@@ -240,7 +240,7 @@ Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGue
     const bool better = IsBetter(cost, data, other, best, options);
     std::vector<Minimum> others = std::move(best.other_minima);
     if (better) std::swap(best, other);
-    if (other.usable) others.push_back({other.parameters, other.sum});
+    if (other.usable && other.sum >= best.sum) others.push_back({other.parameters, other.sum});
     best.other_minima = std::move(others);
     best.iterations += other.iterations;
     if (better) best = Refine(cost, best, WithBudget(cost, options));

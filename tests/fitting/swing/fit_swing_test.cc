@@ -72,7 +72,7 @@ TEST(FitSwing, RemovesAFirstHalfSwingGuidedByHand) {
     const SwingFit result = FitChosen(Guided(run, 0), ModelOptions("coulomb"));
     EXPECT_THAT(result.swing.from, AllOf(Ge(1.9 + 0.9 * kHalfPeriod), Le(1.9 + 2.1 * kHalfPeriod)));
     EXPECT_EQ(result.swing.to, 19.99);
-    EXPECT_EQ(Sentence(result.swing.begins), "the motion before does not fit: touched, or another law");
+    EXPECT_EQ(Sentence(result.swing.begins), "the motion before does not fit: a touch, or another law");
     EXPECT_THAT(result.used.time[0] - result.swing.from, AllOf(Ge(0.0), Lt(0.01)));
     ExpectTruthOfThePendulum(result.fit, run);
   }
@@ -85,7 +85,7 @@ TEST(FitSwing, RemovesALastHalfSwingGuidedByHand) {
   const SwingFit result = FitChosen(Guided(run, 27, 0.015), ModelOptions("coulomb"));
   EXPECT_THAT(result.swing.to, AllOf(Ge(1.9 + 25 * kHalfPeriod), Le(1.9 + 27.2 * kHalfPeriod)));
   EXPECT_EQ(result.swing.from, 0);
-  EXPECT_EQ(Sentence(result.swing.ends), "the motion after does not fit: touched, or another law");
+  EXPECT_EQ(Sentence(result.swing.ends), "the motion after does not fit: a touch, or another law");
   ExpectTruthOfThePendulum(result.fit, run);
 }
 

@@ -18,7 +18,8 @@ Solution Refine(LeastSquares& cost, const Solution& from, const SolveOptions& op
 
 /// Searches for the lowest of several local minima over a whole recording, from start values that may be rough. It fits
 /// growing parts of the recording, searches on both sides if the pendulum comes to rest, and tries the simpler laws
-/// contained in the friction law. The sum of squares of a law is therefore not larger than that of its simpler laws.
+/// contained in the friction law. The sum of squares of a law is therefore not significantly larger than that of its
+/// simpler laws; where two minima hardly differ, the one is taken at which the readings determine all parameters.
 /// The global minimum is not guaranteed: budgets limit the search.
 Solution Search(TrajectoryCost& cost, const TrajectoryData& data, const StartGuess& guess, const SolveOptions& options);
 

@@ -13,8 +13,8 @@ namespace pendulum {
 
 struct SwingFit {
   Recording used;  ///< The samples that were fitted, without warnings.
-  FreeSwing
-      swing;  ///< The fitted window, with reasons and, if it is shorter than the requested one, with what that costs.
+  /// The fitted window, with reasons and, if it is shorter than the requested one, with what that costs.
+  FreeSwing swing;
   FitReport fit;
   std::string linear_reason = {};  ///< Why the motion is that of a linear oscillator, if the fit was rejected for that.
 };

@@ -124,29 +124,36 @@ inline std::string WindowText(const AveragingWindow& window) {
   return NumberText(window.from) + "," + NumberText(window.to) + " s";
 }
 
-/// Takes rows for means if their values gather at the counts of single readings, and says so. A resolution that was
-/// stated must be that of single readings.
-inline void AssumeMeans(const Unit& unit, Recording& recording) {
-  const double step = recording.resolution_source == "found" ? recording.resolution : FindResolution(recording.value);
+/// Notices rows that look like means although nobody says so. They are taken for means if the count of a single reading
+/// is known; otherwise single readings may look the same, as an encoder's angles with too few digits do.
+inline void NoticeMeans(const Unit& unit, Recording& recording) {
+  constexpr double kAlike = 0.1;
+  const bool has_counts = unit.name == "counts", is_found = recording.resolution_source == "found";
+  const double step = is_found ? recording.resolution : FindResolution(recording.value);
   const int readings = ReadingsPerMean(recording.value, step);
   if (readings == 1) return;
-  constexpr double kAlike = 0.1;
-  const double count = unit.name == "counts"                    ? 1
-                       : recording.resolution_source == "found" ? readings * step
-                                                                : recording.resolution;
+  const std::string n = std::to_string(readings);
+  const std::string finding = "of the values that are possible one in " + n +
+                              " occurs much more often than the others, as in means of " + n +
+                              " readings that were rounded one by one";
+  if (is_found && !has_counts) {
+    recording.warnings.push_back({.code = "means_possible",
+                                  .finding = finding,
+                                  .explanation = "each row is taken for one reading",
+                                  .advice = "if rows are means, give --oversample " + n + " (or a multiple of it)",
+                                  .flags = {"oversample"}});
+    return;
+  }
+  const double count = has_counts ? 1 : recording.resolution;
   if (std::abs(count / step - readings) > kAlike) return;
   recording.oversampling.readings = readings;
-  const std::string n = std::to_string(readings);
-  recording.warnings.push_back({.code = "means_assumed",
-                                .finding = "every " + n +
-                                           "th of the values that are possible occurs much more often than " +
-                                           "the others, as in means of " + n + " readings that were rounded one by one",
-                                .explanation = "each row is taken for such a mean",
-                                .advice = "say it in the file (# oversample: " + n +
-                                          "), or give --oversample 1 if each "
-                                          "row is one reading",
-                                .flags = {"oversample"},
-                                .assumed = "rows that are means of " + n + " readings (--oversample)"});
+  recording.warnings.push_back(
+      {.code = "means_assumed",
+       .finding = finding,
+       .explanation = "each row is taken for such a mean",
+       .advice = "say it in the file (# oversample: " + n + "), or give --oversample 1 if each row is one reading",
+       .flags = {"oversample"},
+       .assumed = "rows that are means of " + n + " readings (--oversample)"});
 }
 
 /// Sets how rows are means of readings. The resolution is then that of the means, whether the file gives theirs or that
@@ -167,7 +174,7 @@ inline void SetOversampling(const Unit& unit, const ReadOptions& options, const 
       WarnOfAveraging("window_s", WindowText({from, to}), "# window_s: " + WindowText(*metadata.window), recording);
     }
   }
-  if (options.oversample == 0 && by_file == 0) AssumeMeans(unit, recording);
+  if (options.oversample == 0 && by_file == 0) NoticeMeans(unit, recording);
   FindCountLevels(unit.name == "counts", recording);
   if (oversampling.count > 0)
     std::erase_if(recording.warnings, [](const Warning& warning) { return warning.code == "resolution_disagrees"; });
