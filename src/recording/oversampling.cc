@@ -100,7 +100,7 @@ Preference PreferenceOf(const Eigen::VectorXi& steps, Eigen::Index lag, int n, i
 
 /// The largest size of a preference that chance does not explain, of all motion or of slow motion; 0 if there is none.
 double ClearPreference(const Eigen::VectorXi& steps, int n) {
-  constexpr double kSignificant = 20;  // its square times the samples: 2e-9 by chance
+  constexpr double kSignificant = 14;  // its square times the samples: 8e-7 by chance
   constexpr int kSlow = 4;             // counts
   double largest = 0;
   const auto consider = [&](const Preference& preference) {
@@ -121,7 +121,7 @@ int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
   constexpr double kCounts = 20;  // that the motion must span
   constexpr double kMostSteps = 1e7;
   constexpr double kClear = 0.18;  // size of the preference
-  constexpr double kAsMuch = 0.9;  // of the largest one: without noise divisors of n are preferred as much
+  constexpr double kAsMuch = 0.5;  // of the largest one: little noise prefers divisors of n as well, but no multiples
   if (!(step > 0) || value.size() == 0) return 1;
   const auto part = value.head(std::min(value.size(), kMostSamples)).array();
   const double lowest = part.minCoeff();

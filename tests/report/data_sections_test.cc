@@ -50,8 +50,7 @@ TEST(DataSections, SayWhatTheWindowLeavesOut) {
   Identification report = ExampleIdentification();
   EXPECT_THAT(TextOf(report, "Data"), testing::Not(HasSubstr("left out")));
   report.recordings.front().data.left_out = LeftOut{12, 47, true, 1.8};
-  EXPECT_THAT(TextOf(report, "Data"),
-              HasSubstr("left out    12 of 47 half swings, also the largest: the"));
+  EXPECT_THAT(TextOf(report, "Data"), HasSubstr("left out    12 of 47 half swings, also the largest: the"));
 }
 
 // 0.25 rad = 14.3 deg, 0.125 rad = 7.16 deg.
