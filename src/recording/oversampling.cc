@@ -124,6 +124,7 @@ int ReadingsPerMean(const Eigen::VectorXd& value, double step) {
   constexpr double kAsMuch = 0.5;  // of the largest one: little noise prefers divisors of n as well, but no multiples
   if (!(step > 0) || value.size() == 0) return 1;
   const auto part = value.head(std::min(value.size(), kMostSamples)).array();
+  if (!part.isFinite().all()) return 1;
   const double lowest = part.minCoeff();
   const double span = (part.maxCoeff() - lowest) / step;
   if (!(span < kMostSteps)) return 1;
