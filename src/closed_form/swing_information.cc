@@ -8,9 +8,17 @@
 namespace pendulum {
 namespace {
 
-/// When half swing i begins. The first turning point may be anywhere in a hold.
-double BeginOf(const FreeSwing& swing, std::size_t i) {
-  return i == 0 ? std::clamp(swing.after_hold, swing.turns[0], swing.turns[1]) : swing.turns[i];
+struct HalfSwing {
+  double duration = 0, middle = 0;  // s
+
+  bool IsWithin(double from, double to) const { return middle >= from && middle <= to; }
+};
+
+/// Half swing i. The first turning point may be anywhere in a hold.
+HalfSwing HalfSwingOf(const FreeSwing& swing, std::size_t i) {
+  const double end = swing.turns[i + 1];
+  const double begin = i == 0 ? std::clamp(swing.after_hold, swing.turns[0], end) : swing.turns[i];
+  return {end - begin, 0.5 * (begin + end)};
 }
 
 }  // namespace
@@ -18,15 +26,14 @@ double BeginOf(const FreeSwing& swing, std::size_t i) {
 double InformationOn(const FreeSwing& swing, double from, double to) {
   double weight = 0, first_moment = 0, second_moment = 0, within = 0;
   for (std::size_t i = 0; i < swing.heights.size(); ++i) {
-    const double duration = swing.turns[i + 1] - BeginOf(swing, i);
-    const double middle = BeginOf(swing, i) + 0.5 * duration;
-    if (middle < from || middle > to) continue;
-    const double time = middle - swing.turns.front();  // near 0, so that no digits are lost
-    const double own = duration * swing.heights[i] * swing.heights[i];
+    const HalfSwing half = HalfSwingOf(swing, i);
+    if (!half.IsWithin(from, to)) continue;
+    const double time = half.middle - swing.turns.front();  // near 0, so that no digits are lost
+    const double own = half.duration * swing.heights[i] * swing.heights[i];
     weight += own;
     first_moment += own * time;
     second_moment += own * time * time;
-    within += own * duration * duration / 12;
+    within += own * half.duration * half.duration / 12;
   }
   return weight > 0 ? second_moment - first_moment * first_moment / weight + within : 0;
 }
@@ -35,8 +42,7 @@ std::optional<LeftOut> LeftOutOf(const FreeSwing& swing, double from, double to)
   LeftOut left_out;
   double largest_inside = 0, largest_outside = 0;
   for (std::size_t i = 0; i < swing.heights.size(); ++i) {
-    const double middle = 0.5 * (BeginOf(swing, i) + swing.turns[i + 1]);
-    const bool is_inside = middle >= from && middle <= to;
+    const bool is_inside = HalfSwingOf(swing, i).IsWithin(from, to);
     double& largest = is_inside ? largest_inside : largest_outside;
     largest = std::max(largest, swing.heights[i]);
     left_out.half_swings += is_inside ? 0 : 1;

@@ -16,7 +16,6 @@ cause named.
 
 import collections
 import dataclasses
-import fnmatch
 import math
 import os
 import pathlib
@@ -32,7 +31,7 @@ import judging  # noqa: E402
 import study  # noqa: E402
 from lab import RIG, Lab, textbook_lab  # noqa: E402
 from row_summary import LEAST_JUDGED, of_parameter  # noqa: E402
-from scenarios import ANGLE, DEG, SHORT, TO_REST, set_bits, set_duration, set_mean, set_noise  # noqa: E402
+from scenarios import ANGLE, DEG, ROWS, set_mean, set_noise  # noqa: E402
 
 FIRST_SEED = 200_000
 COVERAGE = (0.93, 0.97)
@@ -67,11 +66,11 @@ def mean_cell(conversions: int, counts: float) -> Cell:
                 highest=1.0 if counts <= QUIET else COVERAGE[1])
 
 
-CHANGES = {"AR(1) 0.5": lambda lab: set_noise(lab, 0.25, 0.5), "AR(1) 0.9": lambda lab: set_noise(lab, 0.25, 0.9),
-           "AR(1) 0.5, 1 count": lambda lab: set_noise(lab, 1.0, 0.5), "AR(1) 0.9, 1 count": lambda lab: set_noise(lab, 1.0, 0.9),
-           "0.1 count": lambda lab: set_noise(lab, QUIET), "4 s": lambda lab: set_duration(lab, SHORT),
-           "to rest": lambda lab: set_duration(lab, TO_REST),
-           **{f"{bits} bits": lambda lab, bits=bits: set_bits(lab, bits) for bits in (8, 12, 14)}}
+CHANGES = {"AR(1) 0.5": lambda lab: set_noise(lab, 0.25, 0.5),
+           **{words: ROWS[f"exact_{row}"].change
+              for words, row in (("AR(1) 0.9", "ar"), ("AR(1) 0.5, 1 count", "ar_0.5"), ("AR(1) 0.9, 1 count", "ar_0.9"),
+                                 ("0.1 count", "quiet"), ("4 s", "short"), ("to rest", "rest"), ("8 bits", "8_bits"),
+                                 ("12 bits", "12_bits"), ("14 bits", "14_bits"))}}
 CELLS = {"clean": Cell(is_clean=True), **{name: Cell((name,)) for name in (*STATED, "rig")},
          "gain, lag, clock": Cell(("gain", "lag", "clock")),
          "nonlinearity, backlash, drift": Cell(("nonlinearity", "backlash", "drift")),
@@ -160,12 +159,10 @@ def main() -> int:
     """Runs the cells, prints a row of each and returns the exit code."""
     parser = study.parser_of(__doc__)
     parser.add_argument("--count", type=int, default=2000, help="recordings of each cell")
-    parser.add_argument("--cells", default="*", help="patterns with semicolons between them")
+    study.add_cells(parser)
     arguments = parser.parse_args()
     tool = study.tool_of(parser, arguments)
-    cells = [cell for cell in CELLS if any(fnmatch.fnmatch(cell, part) for part in arguments.cells.split(";"))]
-    if not cells:
-        parser.error(f"no cell matches {arguments.cells}; there are {'; '.join(CELLS)}")
+    cells = study.cells_of(parser, arguments, CELLS)
     print(f"{'cell':30}{'named':>6}{'alarms':>7} " + "".join(f"{name[:12]:>13}" for name in ANGLE))
     rows = []
     with study.runner(arguments.jobs) as run_all:

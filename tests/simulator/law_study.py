@@ -4,13 +4,13 @@
 
   law_study.py BIN_DIR [--count 200] [--jobs 2] [--cells 'coulomb*'] [--json OUT.json]
 
-A cell is a true law and a kind of noise, length or resolution. The laws are those of the textbook rig: `viscous` without dry friction, `coulomb`, and `drag`
-with quadratic drag of 0.002. The user states G and a sensor without faults. Exit code 1 if a law is recommended in fewer than
-95 % of the recordings of a cell, or if more than 5 % of its recommendations are a law with a term that the true law does not have.
+A cell is a true law and a kind of noise, length or resolution. The laws are those of the textbook rig: `viscous` without dry
+friction, `coulomb`, and `drag` with quadratic drag of 0.002. The user states G and a sensor without faults. Exit code 1 if a law
+is recommended in fewer than 95 % of the recordings of a cell, or if more than 5 % of its recommendations are a law with a term
+that the true law does not have.
 """
 
 import collections
-import fnmatch
 import itertools
 import os
 import pathlib
@@ -57,12 +57,10 @@ def main() -> int:
     """Runs the cells, prints a row of each and returns the exit code."""
     parser = study.parser_of(__doc__)
     parser.add_argument("--count", type=int, default=200, help="recordings of each cell")
-    parser.add_argument("--cells", default="*", help="patterns with semicolons between them")
+    study.add_cells(parser)
     arguments = parser.parse_args()
     tool = study.tool_of(parser, arguments)
-    cells = [cell for cell in CELLS if any(fnmatch.fnmatch(cell, part) for part in arguments.cells.split(";"))]
-    if not cells:
-        parser.error(f"no cell matches {arguments.cells}; there are {'; '.join(CELLS)}")
+    cells = study.cells_of(parser, arguments, CELLS)
     rows, fails = [], False
     with study.runner(arguments.jobs) as run_all:
         for cell in cells:

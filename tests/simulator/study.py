@@ -2,8 +2,10 @@
 """What the studies of many recordings have in common: their command line, one fit, and the processes that run them."""
 
 import argparse
+import collections.abc
 import concurrent.futures
 import contextlib
+import fnmatch
 import json
 import pathlib
 import tempfile
@@ -19,6 +21,19 @@ def parser_of(doc: str) -> argparse.ArgumentParser:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--json", type=pathlib.Path)
     return parser
+
+
+def add_cells(parser: argparse.ArgumentParser) -> None:
+    """The option that chooses cells of a study."""
+    parser.add_argument("--cells", default="*", help="patterns with semicolons between them")
+
+
+def cells_of(parser: argparse.ArgumentParser, arguments: argparse.Namespace, cells: collections.abc.Iterable[str]) -> list[str]:
+    """The names of the chosen cells; ends the program if there are none."""
+    chosen = [cell for cell in cells if any(fnmatch.fnmatch(cell, part) for part in arguments.cells.split(";"))]
+    if not chosen:
+        parser.error(f"no cell matches {arguments.cells}; there are {'; '.join(cells)}")
+    return chosen
 
 
 def tool_of(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> pathlib.Path:

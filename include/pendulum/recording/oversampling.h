@@ -25,8 +25,7 @@ double CountOf(const Recording& recording);
 /// How many readings a value seems to be the mean of, 1 if there is no sign of a mean. The mean of n readings that were
 /// rounded to whole counts is a multiple of 1/n count, but values gather at whole counts where noise is less than half
 /// a count, because there all readings round to the same side (MODEL.md eq. (7.12)). `step`: spacing of the values.
-/// Needs motion over many counts, and finds usual numbers from 3 on: means of 2
-/// look like rows that were interpolated.
+/// Needs motion over many counts, and finds usual numbers from 3 on: means of 2 look like rows that were interpolated.
 int ReadingsPerMean(const Eigen::VectorXd& value, double step);
 
 /// Finds the levels of single readings from the resolution and the grid of the means, for a recording whose readings

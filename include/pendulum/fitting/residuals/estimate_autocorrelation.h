@@ -26,9 +26,8 @@ Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop = {});
 
 /// The same for quantile residuals z of readings with that noise. Rounding hides a known part of the autocorrelation of
-/// noise, so that an AR(1) of the noise is one more candidate at even time stamps (MODEL.md section 7,
-/// Autocorrelated residuals). jacobian N x K, the readings' derivatives with
-/// respect to all fitted parameters.
+/// noise, so that an AR(1) of the noise is one more candidate at even time stamps (MODEL.md section 7, Autocorrelated
+/// residuals). jacobian N x K, the readings' derivatives with respect to all fitted parameters.
 Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
                                         const Eigen::MatrixXd& jacobian, const std::stop_token& stop = {});
 

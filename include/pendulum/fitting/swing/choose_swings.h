@@ -33,9 +33,9 @@ struct ChosenSwings {
 };
 
 /// Finds the free swings and chooses among them. A bound given by the user is used as it is; if both are given and no
-/// release is chosen, there is no search. Without a choice it is the swing with the most information on the period
-/// (InformationOn). A recording sampled too slowly for a pendulum such as the rig's
-/// (IsUndersampled) is one swing from end to end. kInvalidArgument: no swing with that number, or an empty window.
+/// release is chosen, there is no search. Where the user chooses nothing, the swing is taken that determines the period
+/// best (InformationOn). A recording sampled too slowly for a pendulum such as the rig's (IsUndersampled) is one swing
+/// from end to end. kInvalidArgument: no swing with that number, or an empty window.
 /// kFailedPrecondition: as FindFreeSwings. kDataLoss: as CheckClock.
 Result<ChosenSwings> ChooseSwings(const Recording& recording, const SwingChoice& choice,
                                   const std::optional<Rig>& rig = std::nullopt);

@@ -65,16 +65,16 @@ inline void WarnOfResolution(double found, Recording& recording) {
 }
 
 /// Sets the resolution and its source: the user, the file, or the values themselves. Whole counts have a resolution of
-/// at least 1.
-inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
+/// at least 1. spacing: FindResolution of the values.
+inline void SetResolution(const Unit& unit, const ReadOptions& options, const Metadata& metadata, double spacing,
                           Recording& recording) {
   if (options.resolution || metadata.resolution) {
     recording.resolution = options.resolution ? *options.resolution : *metadata.resolution;
     recording.resolution_source = options.resolution ? "given" : "file";
-    WarnOfResolution(FindResolution(recording.value), recording);
+    WarnOfResolution(spacing, recording);
     return;
   }
-  recording.resolution = FindResolution(recording.value);
+  recording.resolution = spacing;
   if (recording.resolution == 0 && unit.name == "counts" && AllWhole(recording.value)) recording.resolution = 1;
   recording.resolution_source = "found";
 }
@@ -125,12 +125,12 @@ inline std::string WindowText(const AveragingWindow& window) {
 }
 
 /// Notices rows that look like means although nobody says so. They are taken for means if the count of a single reading
-/// is known; otherwise single readings may look the same, as an encoder's angles with too few digits do.
-inline void NoticeMeans(const Unit& unit, Recording& recording) {
+/// is known; otherwise single readings may look the same, as an encoder's angles with too few digits do. spacing:
+/// FindResolution of the values.
+inline void NoticeMeans(const Unit& unit, double spacing, Recording& recording) {
   constexpr double kAlike = 0.1;
   const bool has_counts = unit.name == "counts", is_found = recording.resolution_source == "found";
-  const double step = is_found ? recording.resolution : FindResolution(recording.value);
-  const int readings = ReadingsPerMean(recording.value, step);
+  const int readings = ReadingsPerMean(recording.value, spacing);
   if (readings == 1) return;
   const std::string n = std::to_string(readings);
   const std::string finding = "of the values that are possible one in " + n +
@@ -145,7 +145,7 @@ inline void NoticeMeans(const Unit& unit, Recording& recording) {
     return;
   }
   const double count = has_counts ? 1 : recording.resolution;
-  if (std::abs(count / step - readings) > kAlike) return;
+  if (std::abs(count / spacing - readings) > kAlike) return;
   recording.oversampling.readings = readings;
   recording.warnings.push_back(
       {.code = "means_assumed",
@@ -157,8 +157,8 @@ inline void NoticeMeans(const Unit& unit, Recording& recording) {
 }
 
 /// Sets how rows are means of readings. The resolution is then that of the means, whether the file gives theirs or that
-/// of one reading.
-inline void SetOversampling(const Unit& unit, const ReadOptions& options, const Metadata& metadata,
+/// of one reading. spacing: FindResolution of the values.
+inline void SetOversampling(const Unit& unit, const ReadOptions& options, const Metadata& metadata, double spacing,
                             Recording& recording) {
   Oversampling& oversampling = recording.oversampling;
   const auto by_file = static_cast<int>(metadata.oversample);
@@ -174,7 +174,7 @@ inline void SetOversampling(const Unit& unit, const ReadOptions& options, const 
       WarnOfAveraging("window_s", WindowText({from, to}), "# window_s: " + WindowText(*metadata.window), recording);
     }
   }
-  if (options.oversample == 0 && by_file == 0) NoticeMeans(unit, recording);
+  if (options.oversample == 0 && by_file == 0) NoticeMeans(unit, spacing, recording);
   FindCountLevels(unit.name == "counts", recording);
   if (oversampling.count > 0)
     std::erase_if(recording.warnings, [](const Warning& warning) { return warning.code == "resolution_disagrees"; });
@@ -244,8 +244,9 @@ inline void SetValues(const Layout& layout, const ReadOptions& options, const Me
   recording.quantity = QuantityOf(column);
   recording.shows_gravity = !column.is_without_gravity;
   recording.unit = unit.name;
-  SetResolution(unit, options, metadata, recording);
-  SetOversampling(unit, options, metadata, recording);
+  const double spacing = FindResolution(recording.value);
+  SetResolution(unit, options, metadata, spacing, recording);
+  SetOversampling(unit, options, metadata, spacing, recording);
   SetRange(unit, options, metadata, recording);
   ScaleValues(unit, recording);
   const std::optional<Calibration>& calibration = ChosenCalibration(options, metadata);
