@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often the true law is recommended: a small part of the study in RECOMMENDATION.md (recommendation_study.cc).
+// How often the true law is recommended: simulator/RECOMMENDATION.md is a study of more conditions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

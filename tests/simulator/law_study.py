@@ -5,9 +5,10 @@
   law_study.py BIN_DIR [--count 200] [--jobs 2] [--cells 'coulomb*'] [--json OUT.json]
 
 A cell is a true law and a kind of noise, length or resolution. The laws are those of the textbook rig: `viscous` without dry
-friction, `coulomb`, and `drag` with quadratic drag of 0.002. The user states G and a sensor without faults. Exit code 1 if a law
-is recommended in fewer than 95 % of the recordings of a cell, or if more than 5 % of its recommendations are a law with a term
-that the true law does not have.
+friction, `coulomb`, `drag` with quadratic drag of 0.002 N m s²/rad², and `stribeck` with stiction of twice the dry friction and a
+rate of 0.4 rad/s. The user states G and a sensor without faults. Prints rows of the table in RECOMMENDATION.md. Exit code 1 if a
+law is recommended in fewer than 95 % of the recordings of a cell, or if more than 5 % of its recommendations are a law with a
+term that the true law does not have.
 """
 
 import collections
@@ -27,30 +28,48 @@ from lab import Lab, record, textbook_lab  # noqa: E402
 
 FIRST_SEED = 900_000
 LEAST_RECOMMENDED = 0.95
-LAWS = {"viscous": {"coulomb": 0.0}, "coulomb": {}, "drag": {"drag": 0.002}}
 MOST_WRONG = 0.05
-SIMPLER = {"viscous": {"viscous"}, "coulomb": {"viscous", "coulomb"}, "drag": {"viscous", "coulomb", "drag"}}
+LAWS = ("viscous", "coulomb", "drag", "stribeck", "asymmetric", "dahl", "load")  # that --model all compares
 CONDITIONS = {"white": lambda lab: None, **CHANGES}
-CELLS = {f"{law}, {condition}": (law, condition) for law, condition in itertools.product(LAWS, CONDITIONS)}
+CELLS = {f"{law}, {condition}": (law, condition)
+         for law, condition in (*itertools.product(("viscous", "coulomb", "drag"), CONDITIONS), ("stribeck", "to rest"))}
+# Laws without a term that the true law does not have.
+WITHIN = {"viscous": {"viscous"}, "coulomb": {"viscous", "coulomb"}, "drag": {"viscous", "coulomb", "drag"},
+          "stribeck": {"viscous", "coulomb", "stribeck"}}
 
 
-def drawn(cell: str, seed: int) -> Lab:
-    """The rig of one recording."""
-    law, condition = CELLS[cell]
-    lab = textbook_lab(seed)
-    lab.set_friction(**LAWS[law])
-    CONDITIONS[condition](lab)
-    return lab
+def set_law(lab: Lab, law: str) -> None:
+    """Gives the textbook rig, whose law is coulomb, another one."""
+    changes = {"viscous": {"coulomb": 0.0}, "drag": {"drag": 0.002},
+               "stribeck": {"stiction": 2 * lab.law.coulomb, "stribeck_rate": 0.4}}
+    lab.set_friction(**changes.get(law, {}))
 
 
 def run(tool: pathlib.Path, cell: str, seed: int) -> dict:
     """Simulates and fits one recording."""
+    law, condition = CELLS[cell]
+    lab = textbook_lab(seed)
+    set_law(lab, law)
+    CONDITIONS[condition](lab)
     with tempfile.TemporaryDirectory() as folder:
-        code, result, message = judging.run_tool(tool, pathlib.Path(folder), record(drawn(cell, seed)), "all", judging.EXACT_SENSOR)
+        code, result, message = judging.run_tool(tool, pathlib.Path(folder), record(lab), "all", judging.EXACT_SENSOR)
     comparison = (result or {}).get("comparison") or {}
     return {"seed": seed, "exit_code": code, "message": message, "recommended": comparison.get("recommended"),
             "reason": comparison.get("reason"), "criterion": comparison.get("criterion"),
             "bic": {row["model"]: row.get("bic") for row in comparison.get("rows", [])}}
+
+
+def line(cell: str, names: collections.Counter) -> str:
+    """A row of the table."""
+    law, condition = CELLS[cell]
+    return f"| {law} | {condition} | " + " | ".join(str(names[name]) for name in (*LAWS, None)) + " |"
+
+
+def is_faulty(cell: str, names: collections.Counter) -> bool:
+    """Whether a law is recommended too rarely, or one that says too much too often."""
+    given = names.total() - names[None]
+    wrong = given - sum(names[name] for name in WITHIN[CELLS[cell][0]])
+    return given < LEAST_RECOMMENDED * names.total() or wrong > MOST_WRONG * given
 
 
 def main() -> int:
@@ -61,20 +80,18 @@ def main() -> int:
     arguments = parser.parse_args()
     tool = study.tool_of(parser, arguments)
     cells = study.cells_of(parser, arguments, CELLS)
-    rows, fails = [], False
+    print("| law | recordings | " + " | ".join((*LAWS, "none")) + " |\n" + "|---" * (len(LAWS) + 3) + "|")
+    rows, faulty = [], []
     with study.runner(arguments.jobs) as run_all:
         for cell in cells:
             found = run_all(run, [(tool, cell, FIRST_SEED + index) for index in range(arguments.count)])
             names = collections.Counter(each["recommended"] for each in found)
-            codes = collections.Counter(each["exit_code"] for each in found)
-            given = len(found) - names[None]
-            wrong = given - sum(names[name] for name in SIMPLER[CELLS[cell][0]])
-            is_faulty = given < LEAST_RECOMMENDED * len(found) or wrong > MOST_WRONG * given
-            fails = fails or is_faulty
-            print(f"{cell:30} {dict(names)} exit codes {dict(codes)}{'  fails' if is_faulty else ''}", flush=True)
+            faulty += [cell] if is_faulty(cell, names) else []
+            print(line(cell, names), flush=True)
             rows.append({"cell": cell, "recommended": {str(name): count for name, count in names.items()}, "recordings": found})
             study.write(arguments.json, rows)
-    return 1 if fails else 0
+    print(f"fails: {'; '.join(faulty)}" if faulty else "passes", file=sys.stderr)
+    return 1 if faulty else 0
 
 
 if __name__ == "__main__":

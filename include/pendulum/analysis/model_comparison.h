@@ -72,6 +72,6 @@ struct CompareOptions {
 /// recording.
 Comparison CompareModels(const FittedRecordings& fitted, const FitOptions& options, const CompareOptions& how = {});
 
-inline constexpr double kWithinBic = 2;
+inline constexpr double kWithinBic = 6;
 
 }  // namespace pendulum

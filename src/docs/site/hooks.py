@@ -13,7 +13,7 @@ from mkdocs.structure.files import File, Files
 TOP = pathlib.Path(__file__).resolve().parents[3]
 GUIDE = "src/docs"
 OTHER_PAGES = ("MODEL.md", "datasets/ACTIVITY.md", "tests/analysis/COVERAGE.md", "tests/analysis/JOINT_COVERAGE.md",
-               "tests/analysis/RECOMMENDATION.md", "tests/benchmarks/RESULTS.md")
+               "tests/simulator/RECOMMENDATION.md", "tests/benchmarks/RESULTS.md")
 PLACES = {posixpath.basename(path): path for path in OTHER_PAGES}
 # Mathematics as GitHub has it: $$...$$ on lines of its own, $...$ in a line; not in code.
 MATHEMATICS = re.compile(r"```.*?```|`[^`\n]*`|\$\$(.+?)\$\$|\$([^$\n]+?)\$", re.DOTALL)
