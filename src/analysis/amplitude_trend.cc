@@ -50,37 +50,6 @@ struct Windows {
 /// The row of parameter k in a window's linear fit.
 Index RowOf(const LinearFit& linear, Index k) { return std::ranges::find(linear.free, k) - linear.free.begin(); }
 
-/// One σ for all windows.
-double PooledSigma(const std::vector<PartFit>& parts) {
-  double sum = 0, freedom = 0;
-  for (const PartFit& part : parts) {
-    const auto own = static_cast<double>(part.part.size() - static_cast<Index>(part.fit.covariance_names.size()));
-    sum += own * part.fit.noise.sigma * part.fit.noise.sigma;
-    freedom += own;
-  }
-  return std::sqrt(sum / freedom);
-}
-
-/// Autocorrelation of the windows' residuals. The residuals of the whole fit would include the autocorrelation of its
-/// misfit.
-Autocorrelation PooledAutocorrelation(const Recording& used, const Windows& windows, const VectorXd& readings,
-                                      const std::stop_token& stop) {
-  const Index first = windows.parts.front().first;
-  const Index count = windows.parts.back().first + windows.parts.back().part.size() - first;
-  Index columns = 0;
-  for (const LinearFit& linear : windows.linear) columns += linear.influence.cols();
-  MatrixXd jacobian = MatrixXd::Zero(count, columns);
-  columns = 0;
-  for (std::size_t w = 0; w < windows.parts.size(); ++w) {
-    const LinearFit& linear = windows.linear[w];
-    jacobian.block(windows.parts[w].first - first, columns, linear.jacobian.rows(), linear.influence.cols()) =
-        linear.jacobian(Eigen::all, linear.free);
-    columns += linear.influence.cols();
-  }
-  return AutocorrelationOf(windows.noise.From(first), used.clock_scale * used.time.segment(first, count),
-                           used.value.segment(first, count), readings.segment(first, count), jacobian, stop);
-}
-
 /// Derivative of a window's estimate of parameter k with respect to the parameters held at the whole fit's estimates.
 VectorXd Response(const Windows& windows, std::size_t w, Index k, const std::vector<Index>& held, double elapsed) {
   const LinearFit& linear = windows.linear[w];
@@ -182,8 +151,7 @@ std::string FitWindows(const Parts& parts, const std::vector<double>& ends, cons
 /// Linearizes all windows with one common noise.
 bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOptions& options, const Parts& parts,
                       Windows& windows) {
-  windows.noise = parts.NoiseOf(fit);
-  windows.noise.sigma = PooledSigma(windows.parts);
+  windows.noise = parts.PooledNoise(windows.parts);
   VectorXd readings = fit.fitted;
   for (const PartFit& part : windows.parts) readings.segment(part.first, part.part.size()) = part.fit.fitted;
   windows.terms = TermsOf(windows.noise, used.value, readings);
@@ -193,7 +161,7 @@ bool LinearizeWindows(const Recording& used, const FitReport& fit, const FitOpti
     if (!linear) return false;
     windows.linear.push_back(*std::move(linear));
   }
-  windows.autocorrelation = PooledAutocorrelation(used, windows, readings, options.stop);
+  windows.autocorrelation = parts.PooledAutocorrelation(windows.noise, windows.parts, windows.linear);
   return true;
 }
 

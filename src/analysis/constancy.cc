@@ -53,20 +53,14 @@ std::vector<double> HalfSwingEnds(const Recording& used, double begin) {
 
 // ---- Halves --------------------------------------------------------------------------------------------------------
 
-/// One half of the recording: its fit, and what it determines.
-struct Half {
-  PartFit fit;
-  UnboundedEstimate estimate;
-};
-
 /// How much the deviance of a half rises from its estimate without bounds if it has the whole fit's inertia and
 /// friction and a start of its own; std::nullopt if there is no such fit.
-std::optional<double> RiseWithWholeFit(const Parts& parts, double from, double to, const Half& half) {
-  const PartFit held = parts.Fit(from, to, half.estimate.names);
+std::optional<double> RiseWithWholeFit(const Parts& parts, const PartFit& half, const UnboundedEstimate& estimate) {
+  const PartFit held = parts.Fit(half.part.time[0], half.part.time[half.part.size() - 1], estimate.names);
   if (!held.converged()) return std::nullopt;
-  const NoiseModel noise = parts.NoiseOf(half.fit.fit);
-  const auto log_likelihood = [&](const VectorXd& fitted) { return LogLikelihood(noise, half.fit.part.value, fitted); };
-  return half.estimate.gain + 2 * (log_likelihood(half.fit.fit.fitted) - log_likelihood(held.fit.fitted));
+  const NoiseModel noise = parts.NoiseOf(half.fit);
+  const auto log_likelihood = [&](const VectorXd& fitted) { return LogLikelihood(noise, half.part.value, fitted); };
+  return estimate.gain + 2 * (log_likelihood(half.fit.fitted) - log_likelihood(held.fit.fitted));
 }
 
 /// How many times too significant the halves' difference is, because the likelihood of a half is no parabola as far as
@@ -108,27 +102,29 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
   if (ends.size() - 1 < 2 * kMinHalfSwings) return TooFewHalfSwings(ends, "halves", 2 * kMinHalfSwings);
   const double cut = ends[CutEvenly(ends, 2, parts)[1]];
   const std::array ranges = {std::pair(ends.front(), cut), std::pair(NextDoubleAfter(cut), ends.back())};
-  std::array<Half, 2> halves;
-  for (std::size_t k = 0; k < halves.size(); ++k) {
+  std::vector<PartFit> halves;
+  std::vector<LinearFit> linear;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
     const std::string which = k == 0 ? "first" : "second";
-    PartFit half = parts.Fit(ranges[k].first, ranges[k].second, {});
+    const PartFit& half = halves.emplace_back(parts.Fit(ranges[k].first, ranges[k].second, {}));
     if (!half.converged()) return "the fit to the " + which + " half did not converge: " + half.reason;
-    std::optional<UnboundedEstimate> estimate =
-        EstimateUnbounded(half.part, half.fit, parts.NoiseOf(half.fit), options.rig, options.stop);
-    if (!estimate) return "the " + which + " half does not determine all parameters";
-    halves[k] = {std::move(half), *std::move(estimate)};
+    std::optional<LinearFit> own =
+        LinearizeFit(half.part, half.fit, options.rig,
+                     TermsOf(parts.NoiseOf(half.fit), half.part.value, half.fit.fitted), {}, false, options.stop);
+    if (!own) return "the " + which + " half does not determine all parameters";
+    linear.push_back(*std::move(own));
   }
-  const auto& [first, second] = halves;
-  SetHalves(first.estimate, second.estimate, fit, 1, result);
+  const Autocorrelation autocorrelation = parts.PooledAutocorrelation(parts.PooledNoise(halves), halves, linear);
+  const auto estimate = [&](std::size_t k) {
+    return EstimateUnbounded(halves[k].part, halves[k].fit, parts.NoiseOf(halves[k].fit), linear[k], autocorrelation);
+  };
+  const UnboundedEstimate first = estimate(0), second = estimate(1);
+  SetHalves(first, second, fit, 1, result);
   if (HalvesDiffer(result)) {
     const double of_likelihood =
-        SquaredLength(second.estimate.value - first.estimate.value,
-                      first.estimate.likelihood_covariance + second.estimate.likelihood_covariance);
-    std::array<std::optional<double>, 2> rises;
-    for (std::size_t k = 0; k < halves.size(); ++k)
-      rises[k] = RiseWithWholeFit(parts, ranges[k].first, ranges[k].second, halves[k]);
-    const double excess = ExcessOfDifference(result.halves_statistic, of_likelihood, rises);
-    SetHalves(first.estimate, second.estimate, fit, excess, result);
+        SquaredLength(second.value - first.value, first.likelihood_covariance + second.likelihood_covariance);
+    const std::array rises = {RiseWithWholeFit(parts, halves[0], first), RiseWithWholeFit(parts, halves[1], second)};
+    SetHalves(first, second, fit, ExcessOfDifference(result.halves_statistic, of_likelihood, rises), result);
   }
   if (result.halves.empty()) return "inertia and friction are fixed, so there is nothing to compare";
   return result.halves_p ? "" : "the covariance of the halves' difference cannot be inverted";

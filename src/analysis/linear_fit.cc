@@ -98,13 +98,9 @@ double Inflation(const NoiseModel& noise, Index samples, Index free, double lost
 namespace {
 
 /// The covariance of all free parameters, with the residuals' own variance and autocorrelation (MODEL.md eq. (7.7)).
-MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearFit& linear, const NoiseModel& noise,
-                      const ReadingTerms& terms, const std::stop_token& stop) {
+MatrixXd CovarianceOf(const Recording& part, const LinearFit& linear, const NoiseModel& noise,
+                      const ReadingTerms& terms, const Autocorrelation& autocorrelation) {
   const VectorXd time = part.clock_scale * part.time;
-  const bool converged = fit.termination == Termination::kConverged;
-  const Autocorrelation autocorrelation = converged ? fit.noise.autocorrelation
-                                                    : AutocorrelationOf(noise, time, part.value, fit.fitted,
-                                                                        linear.jacobian(Eigen::all, linear.free), stop);
   const MatrixXd covariance = ScoreCovariance(noise, autocorrelation, terms, time, linear.influence);
   const double lost = linear.inverse.ldlt().solve(covariance).trace();
   return covariance * Inflation(noise, time.size(), linear.influence.cols(), lost);
@@ -112,29 +108,39 @@ MatrixXd CovarianceOf(const Recording& part, const FitReport& fit, const LinearF
 
 }  // namespace
 
-/// One step to the maximum of the likelihood without bounds. An estimate cut off at a bound is not normally
-/// distributed, and the other estimates depend on it.
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
                                                    const std::optional<Rig>& rig, const std::stop_token& stop) {
   const ReadingTerms terms = TermsOf(noise, part.value, fit.fitted);
   const std::optional<LinearFit> linear = LinearizeFit(part, fit, rig, terms, {}, false, stop);
   if (!linear) return std::nullopt;
-  const VectorXd step = linear->influence.transpose() * terms.score;
-  const MatrixXd covariance = CovarianceOf(part, fit, *linear, noise, terms, stop);
+  const bool converged = fit.termination == Termination::kConverged;
+  return EstimateUnbounded(part, fit, noise, *linear,
+                           converged ? fit.noise.autocorrelation
+                                     : AutocorrelationOf(noise, part.clock_scale * part.time, part.value, fit.fitted,
+                                                         linear->jacobian(Eigen::all, linear->free), stop));
+}
+
+/// One step to the maximum of the likelihood without bounds. An estimate cut off at a bound is not normally
+/// distributed, and the other estimates depend on it.
+UnboundedEstimate EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
+                                    const LinearFit& linear, const Autocorrelation& autocorrelation) {
+  const ReadingTerms terms = TermsOf(noise, part.value, fit.fitted);
+  const VectorXd step = linear.influence.transpose() * terms.score;
+  const MatrixXd covariance = CovarianceOf(part, linear, noise, terms, autocorrelation);
   UnboundedEstimate estimate;
   const auto physical = static_cast<Index>(PhysicalParameters(fit.model).size());
   std::vector<double> values;
-  for (std::size_t i = 0; i < linear->free.size() && linear->free[i] < physical; ++i) {
-    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(linear->free[i])];
+  for (std::size_t i = 0; i < linear.free.size() && linear.free[i] < physical; ++i) {
+    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(linear.free[i])];
     estimate.names.push_back(parameter.info.name);
     values.push_back(parameter.estimate + step[static_cast<Index>(i)]);
   }
   const auto size = static_cast<Index>(values.size());
   estimate.value = Eigen::Map<const VectorXd>(values.data(), size);
   estimate.covariance = covariance.topLeftCorner(size, size);
-  const VectorXd gradient = linear->jacobian(Eigen::all, linear->free).transpose() * terms.score;
+  const VectorXd gradient = linear.jacobian(Eigen::all, linear.free).transpose() * terms.score;
   estimate.gain = gradient.dot(step);
-  estimate.likelihood_covariance = linear->inverse.topLeftCorner(size, size);
+  estimate.likelihood_covariance = linear.inverse.topLeftCorner(size, size);
   return estimate;
 }
 

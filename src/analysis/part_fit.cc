@@ -116,6 +116,38 @@ PartFit Parts::Fit(double from, double to, const std::vector<std::string_view>& 
 
 NoiseModel Parts::NoiseOf(const FitReport& fit) const { return NoiseOfFit(fit, low_, high_); }
 
+NoiseModel Parts::PooledNoise(const std::vector<PartFit>& fits) const {
+  double sum = 0, freedom = 0;
+  for (const PartFit& part : fits) {
+    const auto own = static_cast<double>(part.part.size() - static_cast<Index>(part.fit.covariance_names.size()));
+    sum += own * part.fit.noise.sigma * part.fit.noise.sigma;
+    freedom += own;
+  }
+  NoiseModel noise = NoiseOf(fit_);
+  noise.sigma = std::sqrt(sum / freedom);
+  return noise;
+}
+
+Autocorrelation Parts::PooledAutocorrelation(const NoiseModel& noise, const std::vector<PartFit>& fits,
+                                             const std::vector<LinearFit>& linear) const {
+  const Index first = fits.front().first;
+  const Index count = fits.back().first + fits.back().part.size() - first;
+  Index columns = 0;
+  for (const LinearFit& part : linear) columns += part.influence.cols();
+  MatrixXd jacobian = MatrixXd::Zero(count, columns);
+  VectorXd readings = fit_.fitted.segment(first, count);
+  columns = 0;
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const Index begin = fits[k].first - first;
+    readings.segment(begin, fits[k].part.size()) = fits[k].fit.fitted;
+    jacobian.block(begin, columns, linear[k].jacobian.rows(), linear[k].influence.cols()) =
+        linear[k].jacobian(Eigen::all, linear[k].free);
+    columns += linear[k].influence.cols();
+  }
+  return AutocorrelationOf(noise.From(first), used_.clock_scale * used_.time.segment(first, count),
+                           used_.value.segment(first, count), readings, jacobian, options_.stop);
+}
+
 double Parts::Amplitude(double time) const {
   if (!motion_) return 0;
   const double angle = motion_->Angle(Instant(time));

@@ -10,8 +10,10 @@
 #include <Eigen/Core>
 
 #include "pendulum/analysis/fitted_motion.h"
+#include "pendulum/analysis/linear_fit.h"
 #include "pendulum/fitting/fit/fit.h"
 #include "pendulum/fitting/likelihood/noise.h"
+#include "pendulum/fitting/residuals/autocorrelation.h"
 #include "pendulum/recording/recording.h"
 #include "pendulum/trajectory/trajectory.h"
 
@@ -40,6 +42,14 @@ class Parts {
   PartFit Fit(double from, double to, const std::vector<std::string_view>& held) const;
 
   NoiseModel NoiseOf(const FitReport& fit) const;
+
+  /// The whole fit's noise, with one σ of the residuals of all `fits`.
+  NoiseModel PooledNoise(const std::vector<PartFit>& fits) const;
+
+  /// The autocorrelation of the residuals of parts that follow each other, with that noise. Those of the whole fit
+  /// would include the autocorrelation of its misfit, and one part alone may be too short to show it.
+  Autocorrelation PooledAutocorrelation(const NoiseModel& noise, const std::vector<PartFit>& fits,
+                                        const std::vector<LinearFit>& linear) const;
 
   /// Amplitude [rad] of the whole fit's swing at a time [s, file's clock]; 0 if the trajectory cannot be computed.
   double Amplitude(double time) const;
