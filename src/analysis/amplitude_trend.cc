@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "pendulum/analysis/linear_fit.h"
+#include "pendulum/analysis/random_effects.h"
 #include "pendulum/base/distributions.h"
 
 namespace pendulum {
@@ -211,6 +212,7 @@ void AddTrends(const Recording& used, const FitReport& fit, const LinearFit& who
       (k == 0 ? row.inertia_std_error : row.friction_std_error) = std::sqrt(covariance(w, w));
     }
     result.trends.push_back(TrendOf(fit.parameters[static_cast<std::size_t>(k)], value, covariance, square));
+    result.trends.back().scatter_p = ScatterP(value, covariance.diagonal().cwiseSqrt());
   }
 }
 

@@ -91,11 +91,6 @@ void SetHalves(const UnboundedEstimate& first, const UnboundedEstimate& second, 
   result.halves_p = ChiSquareTail(statistic, result.halves_dof);
 }
 
-bool HalvesDiffer(const Constancy& result) {
-  const auto differs = [](const HalvesRow& row) { return TwoSidedP(row.z) < kNotConstant; };
-  return result.halves_p && (*result.halves_p < kNotConstant || std::ranges::any_of(result.halves, differs));
-}
-
 /// Returns why there is no test; empty if there is one.
 std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, const FitReport& fit,
                           const FitOptions& options, Constancy& result) {
@@ -120,7 +115,7 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
   };
   const UnboundedEstimate first = estimate(0), second = estimate(1);
   SetHalves(first, second, fit, 1, result);
-  if (HalvesDiffer(result)) {
+  if (result.halves_differ()) {
     const double of_likelihood =
         SquaredLength(second.value - first.value, first.likelihood_covariance + second.likelihood_covariance);
     const std::array rises = {RiseWithWholeFit(parts, halves[0], first), RiseWithWholeFit(parts, halves[1], second)};
@@ -164,11 +159,21 @@ std::string DescribeTrend(const AmplitudeTrend& trend) {
          ProbabilityText(trend.p) + "): " + why;
 }
 
+std::string DescribeScatter(const AmplitudeTrend& trend) {
+  return trend.name + " scatters between windows of the recording by more than its errors (p " +
+         ProbabilityText(trend.scatter_p) + ")";
+}
+
 std::string Describe(const Constancy& result) {
   std::string found;
-  if (result.halves_p && *result.halves_p < kNotConstant) found = DescribeHalves(result);
-  for (const AmplitudeTrend& trend : result.trends)
-    if (trend.p < kNotConstant) found = Join(found, DescribeTrend(trend), "; ");
+  if (result.halves_differ()) found = DescribeHalves(result);
+  for (const AmplitudeTrend& trend : result.trends) {
+    if (trend.p < kNotConstant) {
+      found = Join(found, DescribeTrend(trend), "; ");
+    } else if (trend.scatter_p < kNotConstant) {
+      found = Join(found, DescribeScatter(trend), "; ");
+    }
+  }
   if (!found.empty()) return found;
   if (!result.halves_p && result.trends.empty()) return "not tested: " + result.reason;
   std::string names;
@@ -191,10 +196,17 @@ std::pair<Recording, FitReport> CorrectedReadings(Recording used, FitReport fit)
 
 }  // namespace
 
-bool Constancy::constant() const {
-  return halves_p.value_or(1) >= kNotConstant &&
-         std::ranges::all_of(trends, [](const AmplitudeTrend& trend) { return trend.p >= kNotConstant; });
+bool Constancy::halves_differ() const {
+  const auto differs = [](const HalvesRow& row) { return TwoSidedP(row.z) < kNotConstant; };
+  return halves_p && (*halves_p < kNotConstant || std::ranges::any_of(halves, differs));
 }
+
+bool Constancy::windows_differ() const {
+  return std::ranges::any_of(
+      trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant || trend.scatter_p < kNotConstant; });
+}
+
+bool Constancy::constant() const { return !halves_differ() && !windows_differ(); }
 
 bool Constancy::is_too_short_for_halves() const { return half_swings && *half_swings < 2 * kMinHalfSwings; }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pendulum/analysis/random_effects.h"
+#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum {
@@ -29,8 +30,6 @@ struct Estimates {
   std::string_view parts;
 };
 
-bool Scatters(const VectorXd& value, const VectorXd& std_error) { return ScatterP(value, std_error) < kNotConstant; }
-
 /// Standard deviation of a quantity that is evenly distributed over this range.
 double DeviationOverRange(double range) { return std::abs(range) / std::sqrt(12.0); }
 
@@ -46,7 +45,7 @@ Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>
     square[w] = row.amplitude * row.amplitude;
   }
   const bool has_trend = trend.p < kNotConstant;
-  estimates.differs = has_trend || Scatters(estimates.value, estimates.std_error);
+  estimates.differs = has_trend || trend.scatter_p < kNotConstant;
   if (has_trend) estimates.least_change = DeviationOverRange(trend.slope * (square.maxCoeff() - square.minCoeff()));
   return estimates;
 }
@@ -63,7 +62,7 @@ Estimates OfHalves(const HalvesRow& row, const Constancy& constancy) {
                       false,
                       0,
                       "halves"};
-  const bool has_jump = is_most || Scatters(estimates.value, estimates.std_error);
+  const bool has_jump = is_most || TwoSidedP(row.z) < kNotConstant;
   estimates.differs = is_joint || has_jump;
   if (has_jump) estimates.least_change = 0.5 * std::abs(row.second - row.first);
   return estimates;

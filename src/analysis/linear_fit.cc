@@ -8,7 +8,6 @@
 #include <Eigen/Cholesky>
 
 #include "pendulum/analysis/fitted_motion.h"
-#include "pendulum/fitting/residuals/estimate_autocorrelation.h"
 #include "pendulum/fitting/residuals/residual_diagnostics.h"
 #include "pendulum/fitting/solve/covariance.h"
 #include "pendulum/fitting/solve/fit_problem.h"
@@ -84,9 +83,11 @@ NoiseModel NoiseOfFit(const Recording& used, const FitReport& fit, const FitOpti
 }
 
 Autocorrelation AutocorrelationOf(const NoiseModel& noise, const VectorXd& time, const VectorXd& value,
-                                  const VectorXd& readings, const MatrixXd& jacobian, const std::stop_token& stop) {
+                                  const VectorXd& readings, const MatrixXd& jacobian, const std::stop_token& stop,
+                                  Whiteness whiteness) {
   const VectorXd z = QuantileResiduals(noise, value, readings);
-  return MayBeCorrelated(z) ? EstimateAutocorrelation(noise, time, z, jacobian, stop) : Autocorrelation();
+  if (whiteness == Whiteness::kPossible && !MayBeCorrelated(z)) return {};
+  return EstimateAutocorrelation(noise, time, z, jacobian, stop, whiteness);
 }
 
 double Inflation(const NoiseModel& noise, Index samples, Index free, double lost) {

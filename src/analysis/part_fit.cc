@@ -144,8 +144,10 @@ Autocorrelation Parts::PooledAutocorrelation(const NoiseModel& noise, const std:
         linear[k].jacobian(Eigen::all, linear[k].free);
     columns += linear[k].influence.cols();
   }
+  const bool is_white = fit_.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite;
   return AutocorrelationOf(noise.From(first), used_.clock_scale * used_.time.segment(first, count),
-                           used_.value.segment(first, count), readings, jacobian, options_.stop);
+                           used_.value.segment(first, count), readings, jacobian, options_.stop,
+                           is_white ? Whiteness::kPossible : Whiteness::kExcluded);
 }
 
 double Parts::Amplitude(double time) const {

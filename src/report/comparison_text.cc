@@ -190,20 +190,14 @@ Table WindowTable(const Constancy& constancy) {
   return table;
 }
 
-bool HasTrend(const Constancy& constancy) {
-  return std::ranges::any_of(constancy.trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant; });
-}
-
-bool DoHalvesDiffer(const Constancy& constancy) { return constancy.halves_p.value_or(1) < kNotConstant; }
-
 /// Whether a table shows friction below 0, which is outside the fit's own bound.
 bool HasNegativeFriction(const Constancy& constancy) {
   const auto in_half = [](const HalvesRow& row) {
     return row.name != kAsymmetry.name && (row.first < 0 || row.second < 0);
   };
   const auto in_window = [](const AmplitudeRow& row) { return row.friction < 0; };
-  return (DoHalvesDiffer(constancy) && std::ranges::any_of(constancy.halves, in_half)) ||
-         (HasTrend(constancy) && std::ranges::any_of(constancy.windows, in_window));
+  return (constancy.halves_differ() && std::ranges::any_of(constancy.halves, in_half)) ||
+         (constancy.windows_differ() && std::ranges::any_of(constancy.windows, in_window));
 }
 
 }  // namespace
@@ -219,8 +213,8 @@ Sections ConstancySections(const Constancy* constancy) {
   if (constancy == nullptr || (constancy->verdict.empty() && constancy->reason.empty())) return {};
   Section section{"Constancy"};
   section.AddText(Sentence(constancy->verdict), constancy->constant() ? Emphasis::kNone : Emphasis::kCaution);
-  if (DoHalvesDiffer(*constancy)) section.Add(HalvesTable(*constancy));
-  if (HasTrend(*constancy)) section.Add(WindowTable(*constancy));
+  if (constancy->halves_differ()) section.Add(HalvesTable(*constancy));
+  if (constancy->windows_differ()) section.Add(WindowTable(*constancy));
   if (HasNegativeFriction(*constancy)) {
     section.AddText("Parts are fitted without bounds, so a single part may show friction below 0.");
   }

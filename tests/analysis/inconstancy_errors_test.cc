@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/analysis/inconstancy.h"
+#include "pendulum/analysis/random_effects.h"
 #include "tests/analysis/fitted_run.h"
 
 namespace pendulum::inconstancy_errors_test {
@@ -46,12 +47,14 @@ class SimulatedWindows {
  public:
   Constancy Draw(double between, double spread_of_errors) {
     Constancy constancy;
+    Eigen::VectorXd value(kWindows), std_error(kWindows);
     for (int w = 0; w < kWindows; ++w) {
-      const double error = 1e-5 * std::pow(spread_of_errors, static_cast<double>(w) / (kWindows - 1));
+      std_error[w] = 1e-5 * std::pow(spread_of_errors, static_cast<double>(w) / (kWindows - 1));
       const double truth = kInertiaOfParts + between * normal_(generator_);
-      constancy.windows.push_back({0, 1, 0.1, truth + error * normal_(generator_), error, 0, 0});
+      value[w] = truth + std_error[w] * normal_(generator_);
+      constancy.windows.push_back({0, 1, 0.1, value[w], std_error[w], 0, 0});
     }
-    constancy.trends = {{"inertia", "s^2", 0, 1, 0, 1}};
+    constancy.trends = {{"inertia", "s^2", 0, 1, 0, 1, ScatterP(value, std_error)}};
     return constancy;
   }
   double Next() { return normal_(generator_); }

@@ -174,7 +174,7 @@ TEST(Inconstancy, DoesNotCountFrictionBelowZero) {
   constancy.windows = {{0, 5, 0.4, 0.0438, 1e-5, friction, 1e-6},
                        {5, 10, 0.3, 0.0438, 1e-5, friction, 1e-6},
                        {10, 15, 0.2, 0.0438, 1e-5, -0.01, 1e-6}};
-  constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1}};
+  constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1, 1e-9}};
   AddInconstancyError({Alone(fit, constancy)}, {}, fit);
   EXPECT_NEAR(SystematicError(fit, "coulomb"), friction / std::sqrt(2.0), 1e-3 * friction);
 }
@@ -246,11 +246,12 @@ TEST(Inconstancy, NeedsNoTrend) {
   constancy.windows = {{0, 5, 0.4, 0.0438, 1e-5, 0.00222, 1e-7},
                        {5, 10, 0.3, 0.0438, 1e-5, 0.00232, 1e-7},
                        {10, 15, 0.2, 0.0438, 1e-5, 0.00222, 1e-7}};
-  constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1}};
+  constancy.trends = {{"inertia", "s^2", 0, 0.1, 0, 1}, {"coulomb", "1", 0, 0.1, 0, 1, 1e-9}};
   constancy.halves = {{"inertia", "s^2", 0.0438, 0.0438, 1e-5, 1e-5, 0},
                       {"viscous", "s", 0.001, 0.003, 0.0001, 0.0001, 14},
                       {"coulomb", "1", 0.00225, 0.00225, 1e-5, 1e-5, 0}};
   AddInconstancyError({Alone(fit, constancy)}, {}, fit);
+  EXPECT_FALSE(constancy.constant());
   EXPECT_THAT(fit.systematic_names, ElementsAre("viscous", "coulomb"));
   // The error of coulomb is the scatter of the windows (the middle one differs by 1e-4); the error of viscous is the
   // scatter of the halves.

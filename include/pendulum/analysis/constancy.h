@@ -34,8 +34,9 @@ struct AmplitudeTrend {
   std::string name, unit;  ///< Name and unit of the parameter.
   double slope = 0;        ///< unit per rad²
   double slope_std_error = 0;
-  double span = 0;  ///< slope · (largest - smallest amplitude²) / estimate: the relative change over the run.
-  double p = 1;     ///< Two-sided probability of a slope at least this large by chance.
+  double span = 0;       ///< slope · (largest - smallest amplitude²) / estimate: the relative change over the run.
+  double p = 1;          ///< Two-sided probability of a slope at least this large by chance.
+  double scatter_p = 1;  ///< Probability that the windows scatter by at least this much by chance (ScatterP).
 };
 
 /// Whether the parameters of a fit stay constant during its recording.
@@ -50,6 +51,8 @@ struct Constancy {
   std::string reason;                      ///< Why a test is missing; empty if none is.
   std::string verdict;                     ///< A sentence that names what is not constant, or says that everything is.
 
+  bool halves_differ() const;             ///< All parameters together, or one of them: a test has p < kNotConstant.
+  bool windows_differ() const;            ///< A parameter has a trend, or scatters: a test has p < kNotConstant.
   bool constant() const;                  ///< No test has p < kNotConstant.
   bool is_too_short_for_halves() const;   ///< The half swings are too few for any test.
   bool is_too_short_for_windows() const;  ///< No test can show how a parameter depends on amplitude.

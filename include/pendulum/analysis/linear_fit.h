@@ -11,6 +11,7 @@
 #include "pendulum/fitting/fit/fit_report.h"
 #include "pendulum/fitting/likelihood/noise.h"
 #include "pendulum/fitting/residuals/autocorrelation.h"
+#include "pendulum/fitting/residuals/estimate_autocorrelation.h"
 #include "pendulum/fitting/start/fit_options.h"
 #include "pendulum/model/parameter.h"
 #include "pendulum/model/rig.h"
@@ -33,10 +34,10 @@ Eigen::MatrixXd ScoreCovariance(const NoiseModel& noise, const Autocorrelation& 
                                 const ReadingTerms& terms, const Eigen::VectorXd& time, const Eigen::MatrixXd& weights);
 
 /// The autocorrelation of N residuals. time: true s; jacobian: N x K, derivatives with respect to all parameters fitted
-/// to the residuals. The result is white if the Ljung-Box test gives p > 0.05.
+/// to the residuals. The result is white if that is possible and the Ljung-Box test gives p > 0.05.
 Autocorrelation AutocorrelationOf(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& value,
                                   const Eigen::VectorXd& readings, const Eigen::MatrixXd& jacobian,
-                                  const std::stop_token& stop = {});
+                                  const std::stop_token& stop = {}, Whiteness whiteness = Whiteness::kPossible);
 
 /// Correction factor for a variance estimated from residuals. The fit of `free` parameters has reduced the expected sum
 /// of squares by `lost` variances.

@@ -47,7 +47,8 @@ class Parts {
   NoiseModel PooledNoise(const std::vector<PartFit>& fits) const;
 
   /// The autocorrelation of the residuals of parts that follow each other, with that noise. Those of the whole fit
-  /// would include the autocorrelation of its misfit, and one part alone may be too short to show it.
+  /// would include the autocorrelation of its misfit, and one part alone may be too short to show it. If the whole fit
+  /// has shown that there is one, only its size is estimated.
   Autocorrelation PooledAutocorrelation(const NoiseModel& noise, const std::vector<PartFit>& fits,
                                         const std::vector<LinearFit>& linear) const;
 

@@ -320,13 +320,14 @@ Vertex BestDiluted(const Surface& surface, double share, double from, double to)
 }
 
 Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual, const Eigen::MatrixXd& weights,
-                             double visible_share, const std::stop_token& stop) {
+                             double visible_share, Whiteness whiteness, const std::stop_token& stop) {
   constexpr double kRounded = 0.95;
   const double penalty = std::log(static_cast<double>(residual.size()));
   const double white = WhiteCriterion(residual);
   const Autoregression burg = BestAutoregression(clock, residual);
   const bool is_rounded = visible_share < kRounded;
-  if (burg.criterion >= 0 && LooksWhite(residual, is_rounded ? 1 : 2)) return {};
+  const bool may_be_white = whiteness == Whiteness::kPossible;
+  if (may_be_white && burg.criterion >= 0 && LooksWhite(residual, is_rounded ? 1 : 2)) return {};
   const Eigen::MatrixXd column = residual;
   const Surface plain = MixedSurface(clock, column, stop);
   const Vertex mixed = BestMixed(plain);
@@ -335,7 +336,8 @@ Autocorrelation EstimateEven(const Clock& clock, const Eigen::VectorXd& residual
   Vertex diluted{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
   if (is_rounded) diluted = BestDiluted(plain, visible_share, -kSteepest, kSteepest);
   const double diluted_gain = diluted.height + penalty - white;
-  if (std::min({burg.criterion, gain, diluted_gain}) >= 0 || stop.stop_requested()) return {};
+  if (may_be_white && std::min({burg.criterion, gain, diluted_gain}) >= 0) return {};
+  if (stop.stop_requested()) return {};
   const bool is_diluted = diluted_gain < std::min(gain, burg.criterion);
   const bool is_mixed = gain < burg.criterion;
   if (!is_diluted && !is_mixed && burg.reflection.size() > 1) return FromBurg(clock, burg.reflection);
@@ -395,8 +397,9 @@ Vertex BestWithWhite(const Surface& surface, double interval) {
 }
 
 Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& weights, const std::stop_token& stop) {
-  if (LooksWhite(residual, 2)) return {};
+                               const Eigen::MatrixXd& weights, Whiteness whiteness, const std::stop_token& stop) {
+  const bool may_be_white = whiteness == Whiteness::kPossible;
+  if (may_be_white && LooksWhite(residual, 2)) return {};
   const double penalty = std::log(static_cast<double>(residual.size()));
   const Eigen::MatrixXd column = residual;
   const Surface plain = ContinuousSurface(time, column, stop);
@@ -404,7 +407,7 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
   const Vertex pure = LowestWithoutWhite(plain, std::log(interval / 10), std::log(time[time.size() - 1] - time[0]));
   const Vertex with_white = BestWithWhite(plain, interval);
   const double least = std::min(pure.height + penalty, with_white.height + 2 * penalty);
-  if (WhiteCriterion(residual) <= least || stop.stop_requested()) return {};
+  if ((may_be_white && WhiteCriterion(residual) <= least) || stop.stop_requested()) return {};
   const Eigen::MatrixXd columns = RestrictedColumns(residual, weights);
   const Surface restricted = ContinuousSurface(time, columns, stop);
   if (least < pure.height + penalty) return Continuous(time, Lowest(restricted, with_white.place, 0.1).place);
@@ -413,12 +416,13 @@ Autocorrelation EstimateUneven(const Eigen::VectorXd& time, const Eigen::VectorX
 
 /// visible_share: of the autocorrelation of the noise, that which the residuals have.
 Autocorrelation EstimateAtAnyStamps(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
-                                    const Eigen::MatrixXd& weights, double visible_share, const std::stop_token& stop) {
+                                    const Eigen::MatrixXd& weights, double visible_share, Whiteness whiteness,
+                                    const std::stop_token& stop) {
   constexpr Eigen::Index kMinSamples = 30;
   if (residual.size() < kMinSamples || !(residual.squaredNorm() > 0)) return {};
   const Clock clock = FindClock(time);
-  return clock.even ? EstimateEven(clock, residual, weights, visible_share, stop)
-                    : EstimateUneven(time, residual, weights, stop);
+  return clock.even ? EstimateEven(clock, residual, weights, visible_share, whiteness, stop)
+                    : EstimateUneven(time, residual, weights, whiteness, stop);
 }
 
 /// The share of the autocorrelation of rounded noise that its quantile residuals have (MODEL.md section 7,
@@ -438,13 +442,14 @@ double VisibleShare(const NoiseModel& noise) {
 
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop) {
-  return EstimateAtAnyStamps(time, residual, weights, 1, stop);
+  return EstimateAtAnyStamps(time, residual, weights, 1, Whiteness::kPossible, stop);
 }
 
 Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
-                                        const Eigen::MatrixXd& jacobian, const std::stop_token& stop) {
+                                        const Eigen::MatrixXd& jacobian, const std::stop_token& stop,
+                                        Whiteness whiteness) {
   const Eigen::VectorXd weight = noise.Deviations(jacobian.rows()).cwiseInverse();
-  return EstimateAtAnyStamps(time, z, weight.asDiagonal() * jacobian, VisibleShare(noise), stop);
+  return EstimateAtAnyStamps(time, z, weight.asDiagonal() * jacobian, VisibleShare(noise), whiteness, stop);
 }
 
 bool MayBeCorrelated(const Eigen::VectorXd& z) {

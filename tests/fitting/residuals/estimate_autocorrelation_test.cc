@@ -127,32 +127,53 @@ TEST(EstimateAutocorrelation, FindsTheOrderOfAThirdOrderProcess) {
 
 // Of AR(1) noise of a quarter count, rounded readings show the share 0.449 of the information, so 0.201 of its
 // correlations; the sum of those of the noise is 2 φ/(1 - φ).
+double InflationOfRounded(double phi) { return 1 + 0.201 * 2 * phi / (1 - phi); }
+
+Autocorrelation EstimateOfRounded(double phi, Eigen::Index samples, std::uint64_t seed, Whiteness whiteness) {
+  constexpr double kSigma = 0.25;
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal(0, 1);
+  Eigen::VectorXd time(samples), swing(samples), reading(samples);
+  double noise = normal(generator);
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    time[i] = 0.01 * static_cast<double>(i);
+    swing[i] = 120 * std::cos(4.8 * time[i]);
+    reading[i] = std::round(swing[i] + kSigma * noise);
+    noise = phi * noise + std::sqrt(1 - phi * phi) * normal(generator);
+  }
+  NoiseModel model;
+  model.family = NoiseFamily::kQuantized;
+  model.sigma = kSigma;
+  model.resolution = 1;
+  return EstimateAutocorrelation(model, time, QuantileResiduals(model, reading, swing), Eigen::MatrixXd(samples, 0), {},
+                                 whiteness);
+}
+
 TEST(EstimateAutocorrelation, FindsTheHiddenPartOfTheCorrelationOfRoundedNoise) {
-  constexpr double kSigma = 0.25, kShare = 0.201;
-  constexpr Eigen::Index kSamples = 2000;
   for (const double phi : {0.5, 0.8}) {
     SCOPED_TRACE(phi);
-    const Summary summary = Summarize(40, [&](std::uint64_t seed) {
-      std::mt19937_64 generator(seed);
-      std::normal_distribution<double> normal(0, 1);
-      Eigen::VectorXd time(kSamples), swing(kSamples), reading(kSamples);
-      double noise = normal(generator);
-      for (Eigen::Index i = 0; i < kSamples; ++i) {
-        time[i] = 0.01 * static_cast<double>(i);
-        swing[i] = 120 * std::cos(4.8 * time[i]);
-        reading[i] = std::round(swing[i] + kSigma * noise);
-        noise = phi * noise + std::sqrt(1 - phi * phi) * normal(generator);
-      }
-      NoiseModel model;
-      model.family = NoiseFamily::kQuantized;
-      model.sigma = kSigma;
-      model.resolution = 1;
-      return EstimateAutocorrelation(model, time, QuantileResiduals(model, reading, swing),
-                                     Eigen::MatrixXd(kSamples, 0));
-    });
-    const double expected = 1 + kShare * 2 * phi / (1 - phi);
-    EXPECT_THAT(summary.inflation, DoubleNear(expected, 0.1 * expected));
+    const Summary summary =
+        Summarize(40, [&](std::uint64_t seed) { return EstimateOfRounded(phi, 2000, seed, Whiteness::kPossible); });
+    EXPECT_THAT(summary.inflation, DoubleNear(InflationOfRounded(phi), 0.1 * InflationOfRounded(phi)));
   }
+}
+
+// Of so few readings the criterion calls some white, although none are.
+TEST(EstimateAutocorrelation, EstimatesTheSizeOfAnAutocorrelationThatIsKnownToBeThere) {
+  constexpr double kPhi = 0.5;
+  const auto summarize = [](Whiteness whiteness) {
+    return Summarize(60, [&](std::uint64_t seed) { return EstimateOfRounded(kPhi, 600, seed, whiteness); });
+  };
+  EXPECT_GE(summarize(Whiteness::kPossible).names["white"], 3);
+  const Summary known = summarize(Whiteness::kExcluded);
+  EXPECT_THAT(known.names, testing::Not(testing::Contains(testing::Key("white"))));
+  EXPECT_THAT(known.inflation, DoubleNear(InflationOfRounded(kPhi), 0.1 * InflationOfRounded(kPhi)));
+}
+
+TEST(EstimateAutocorrelation, IsNearlyWhiteOfWhiteResidualsThatMayNotBeWhite) {
+  const Summary summary =
+      Summarize(60, [&](std::uint64_t seed) { return EstimateOfRounded(0, 600, seed, Whiteness::kExcluded); });
+  EXPECT_THAT(summary.inflation, DoubleNear(1, 0.05));
 }
 
 TEST(EstimateAutocorrelation, RecoversAFirstOrderProcess) {

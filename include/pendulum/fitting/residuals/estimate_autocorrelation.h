@@ -25,11 +25,15 @@ namespace pendulum {
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop = {});
 
+/// Whether residuals may be white, or others of the same noise have shown that they are not.
+enum class Whiteness { kPossible, kExcluded };
+
 /// The same for quantile residuals z of readings with that noise. Rounding hides a known part of the autocorrelation of
 /// noise, so that an AR(1) of the noise is one more candidate at even time stamps (MODEL.md section 7, Autocorrelated
 /// residuals). jacobian N x K, the readings' derivatives with respect to all fitted parameters.
 Autocorrelation EstimateAutocorrelation(const NoiseModel& noise, const Eigen::VectorXd& time, const Eigen::VectorXd& z,
-                                        const Eigen::MatrixXd& jacobian, const std::stop_token& stop = {});
+                                        const Eigen::MatrixXd& jacobian, const std::stop_token& stop = {},
+                                        Whiteness whiteness = Whiteness::kPossible);
 
 /// Whether residuals of unit variance may be correlated: the Ljung-Box test has p <= 0.05.
 bool MayBeCorrelated(const Eigen::VectorXd& z);
