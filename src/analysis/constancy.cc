@@ -135,12 +135,12 @@ std::string Join(const std::string& first, const std::string& second, const std:
 std::string DescribeHalves(const Constancy& result) {
   const auto row =
       std::ranges::max_element(result.halves, {}, [](const HalvesRow& candidate) { return std::abs(candidate.z); });
-  const bool alone = TwoSidedP(row->z) < kNotConstant;
+  const bool alone = row->differs();
   const std::string what =
       alone ? row->name + " differs" : "inertia and friction together differ, most of all " + row->name + ",";
   return what + " between the halves: " + PlusMinusText(row->first, row->first_std_error) + " then " +
          PlusMinusText(row->second, row->second_std_error) + (row->unit == "1" ? "" : " " + row->unit) + " (p " +
-         ProbabilityText(*result.halves_p) + ")";
+         ProbabilityText(alone ? TwoSidedP(row->z) : *result.halves_p) + ")";
 }
 
 /// "230": the size of a relative change in percent.
@@ -168,9 +168,9 @@ std::string Describe(const Constancy& result) {
   std::string found;
   if (result.halves_differ()) found = DescribeHalves(result);
   for (const AmplitudeTrend& trend : result.trends) {
-    if (trend.p < kNotConstant) {
+    if (trend.has_trend()) {
       found = Join(found, DescribeTrend(trend), "; ");
-    } else if (trend.scatter_p < kNotConstant) {
+    } else if (trend.scatters()) {
       found = Join(found, DescribeScatter(trend), "; ");
     }
   }
@@ -196,14 +196,18 @@ std::pair<Recording, FitReport> CorrectedReadings(Recording used, FitReport fit)
 
 }  // namespace
 
+bool HalvesRow::differs() const { return TwoSidedP(z) < kNotConstant; }
+
+bool AmplitudeTrend::has_trend() const { return p < kNotConstant; }
+
+bool AmplitudeTrend::scatters() const { return scatter_p < kNotConstant; }
+
 bool Constancy::halves_differ() const {
-  const auto differs = [](const HalvesRow& row) { return TwoSidedP(row.z) < kNotConstant; };
-  return halves_p && (*halves_p < kNotConstant || std::ranges::any_of(halves, differs));
+  return halves_p.value_or(1) < kNotConstant || std::ranges::any_of(halves, &HalvesRow::differs);
 }
 
 bool Constancy::windows_differ() const {
-  return std::ranges::any_of(
-      trends, [](const AmplitudeTrend& trend) { return trend.p < kNotConstant || trend.scatter_p < kNotConstant; });
+  return std::ranges::any_of(trends, [](const AmplitudeTrend& trend) { return trend.has_trend() || trend.scatters(); });
 }
 
 bool Constancy::constant() const { return !halves_differ() && !windows_differ(); }

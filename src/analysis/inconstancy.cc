@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "pendulum/analysis/random_effects.h"
-#include "pendulum/base/distributions.h"
 #include "pendulum/base/format.h"
 
 namespace pendulum {
@@ -44,9 +43,9 @@ Estimates OfWindows(const AmplitudeTrend& trend, const std::vector<AmplitudeRow>
     estimates.std_error[w] = is_inertia ? row.inertia_std_error : row.friction_std_error;
     square[w] = row.amplitude * row.amplitude;
   }
-  const bool has_trend = trend.p < kNotConstant;
-  estimates.differs = has_trend || trend.scatter_p < kNotConstant;
-  if (has_trend) estimates.least_change = DeviationOverRange(trend.slope * (square.maxCoeff() - square.minCoeff()));
+  estimates.differs = trend.has_trend() || trend.scatters();
+  if (trend.has_trend())
+    estimates.least_change = DeviationOverRange(trend.slope * (square.maxCoeff() - square.minCoeff()));
   return estimates;
 }
 
@@ -62,7 +61,7 @@ Estimates OfHalves(const HalvesRow& row, const Constancy& constancy) {
                       false,
                       0,
                       "halves"};
-  const bool has_jump = is_most || TwoSidedP(row.z) < kNotConstant;
+  const bool has_jump = is_most || row.differs();
   estimates.differs = is_joint || has_jump;
   if (has_jump) estimates.least_change = 0.5 * std::abs(row.second - row.first);
   return estimates;

@@ -192,7 +192,8 @@ void Recommend(const std::vector<FitReport>& fits, Comparison& comparison) {
     comparison.reason += "the simplest of the laws that the readings do not distinguish; the others are " +
                          NameList(undecided) + " (their BIC differs by less than " + NumberText(kWithinBic) + ")";
   }
-  if (next != comparison.rows.size()) {
+  // Of laws that are not near the smallest BIC some may be near that of the chosen one; of these nothing is said.
+  if (next != comparison.rows.size() && *comparison.rows[next].bic > *row.bic + kWithinBic) {
     const ComparisonRow& other = comparison.rows[next];
     comparison.reason += (undecided.empty() ? "BIC lower by " : "; BIC lower by ") + BicText(*other.bic - *row.bic) +
                          " than with " + other.model + PredictionText(row, other);

@@ -39,8 +39,8 @@ Alarms CountAlarms(SyntheticOptions run) {
   return alarms;
 }
 
-// Of 40 tests at p < 0.05, more than 8 alarms happen once in 1500 times (binomial). Of 120 at p < 0.001, two alarms
-// happen once in 150.
+// Of 40 tests at p < 0.05, more than 8 alarms happen once in 1500 times (binomial). Of some 300 at p < 0.0003,
+// three alarms happen once in 9000.
 void ExpectFewAlarms(const SyntheticOptions& run) {
   SCOPED_TRACE(std::string(run.model.name));
   const Alarms alarms = CountAlarms(run);

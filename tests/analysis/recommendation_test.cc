@@ -80,6 +80,12 @@ TEST(Recommend, NamesEquallyGoodModels) {
                     HasSubstr("BIC lower by 39 than with viscous")));
 }
 
+// The chosen law's BIC is 5.9 above the smallest, stribeck's 6.1: nothing tells these two apart.
+TEST(Recommend, ComparesWithNoLawThatIsAsGoodAsTheChosenOne) {
+  EXPECT_THAT(Recommended({{"viscous", 55.9, 1}, {"coulomb", 50, 1}, {"stribeck", 56.1, 1}}).reason,
+              AllOf(HasSubstr("the others are coulomb"), Not(HasSubstr("BIC lower by"))));
+}
+
 TEST(Recommend, ReportsALackOfFit) {
   Compared made = Make({{"coulomb", 862, 0.004}, {"drag", 50, 0.002}});
   made.comparison.rows[1].lack_of_fit = true;

@@ -18,6 +18,8 @@ struct HalvesRow {
   double first = 0, second = 0;
   double first_std_error = 0, second_std_error = 0;
   double z = 0;  ///< (second - first) / its standard deviation
+
+  bool differs() const;  ///< p < kNotConstant of z.
 };
 
 /// A window of the recording. Inertia and the friction parameter with the smallest relative error are fitted again,
@@ -37,6 +39,9 @@ struct AmplitudeTrend {
   double span = 0;       ///< slope · (largest - smallest amplitude²) / estimate: the relative change over the run.
   double p = 1;          ///< Two-sided probability of a slope at least this large by chance.
   double scatter_p = 1;  ///< Probability that the windows scatter by at least this much by chance (ScatterP).
+
+  bool has_trend() const;  ///< p < kNotConstant.
+  bool scatters() const;   ///< scatter_p < kNotConstant.
 };
 
 /// Whether the parameters of a fit stay constant during its recording.

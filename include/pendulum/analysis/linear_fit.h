@@ -77,7 +77,8 @@ struct UnboundedEstimate {
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
                                                    const std::optional<Rig>& rig, const std::stop_token& stop = {});
 
-/// The same of a fit that is linearized already, with the autocorrelation of its residuals.
+/// The same of a fit that is linearized already, without bounds and with this noise. `autocorrelation`: that of its
+/// residuals.
 UnboundedEstimate EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
                                     const LinearFit& linear, const Autocorrelation& autocorrelation);
 

@@ -46,9 +46,9 @@ class Parts {
   /// The whole fit's noise, with one σ of the residuals of all `fits`.
   NoiseModel PooledNoise(const std::vector<PartFit>& fits) const;
 
-  /// The autocorrelation of the residuals of parts that follow each other, with that noise. Those of the whole fit
-  /// would include the autocorrelation of its misfit, and one part alone may be too short to show it. If the whole fit
-  /// has shown that there is one, only its size is estimated.
+  /// The autocorrelation of the residuals of parts that follow each other, with that noise. The residuals of the whole
+  /// fit would include its misfit, and one part alone may be too short to show any autocorrelation. If the residuals of
+  /// the whole fit are not white, white is excluded; where that is because of a misfit, the estimate is nearly white.
   Autocorrelation PooledAutocorrelation(const NoiseModel& noise, const std::vector<PartFit>& fits,
                                         const std::vector<LinearFit>& linear) const;
 

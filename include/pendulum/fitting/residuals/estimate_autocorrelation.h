@@ -25,7 +25,7 @@ namespace pendulum {
 Autocorrelation EstimateAutocorrelation(const Eigen::VectorXd& time, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& weights, const std::stop_token& stop = {});
 
-/// Whether residuals may be white, or others of the same noise have shown that they are not.
+/// Whether white is a candidate. It is excluded if more readings with the same noise have shown an autocorrelation.
 enum class Whiteness { kPossible, kExcluded };
 
 /// The same for quantile residuals z of readings with that noise. Rounding hides a known part of the autocorrelation of
