@@ -98,20 +98,22 @@ std::string CompareHalves(const Parts& parts, const std::vector<double>& ends, c
   const double cut = ends[CutEvenly(ends, 2, parts)[1]];
   const std::array ranges = {std::pair(ends.front(), cut), std::pair(NextDoubleAfter(cut), ends.back())};
   std::vector<PartFit> halves;
+  std::vector<ReadingTerms> terms;
   std::vector<LinearFit> linear;
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     const std::string which = k == 0 ? "first" : "second";
     const PartFit& half = halves.emplace_back(parts.Fit(ranges[k].first, ranges[k].second, {}));
     if (!half.converged()) return "the fit to the " + which + " half did not converge: " + half.reason;
+    terms.push_back(TermsOf(parts.NoiseOf(half.fit), half.part.value, half.fit.fitted));
     std::optional<LinearFit> own =
-        LinearizeFit(half.part, half.fit, options.rig,
-                     TermsOf(parts.NoiseOf(half.fit), half.part.value, half.fit.fitted), {}, false, options.stop);
+        LinearizeFit(half.part, half.fit, options.rig, terms.back(), {}, false, options.stop);
     if (!own) return "the " + which + " half does not determine all parameters";
     linear.push_back(*std::move(own));
   }
   const Autocorrelation autocorrelation = parts.PooledAutocorrelation(parts.PooledNoise(halves), halves, linear);
   const auto estimate = [&](std::size_t k) {
-    return EstimateUnbounded(halves[k].part, halves[k].fit, parts.NoiseOf(halves[k].fit), linear[k], autocorrelation);
+    return EstimateUnbounded(halves[k].part, halves[k].fit, parts.NoiseOf(halves[k].fit), terms[k], linear[k],
+                             autocorrelation);
   };
   const UnboundedEstimate first = estimate(0), second = estimate(1);
   SetHalves(first, second, fit, 1, result);

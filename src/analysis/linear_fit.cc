@@ -115,7 +115,7 @@ std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const 
   const std::optional<LinearFit> linear = LinearizeFit(part, fit, rig, terms, {}, false, stop);
   if (!linear) return std::nullopt;
   const bool converged = fit.termination == Termination::kConverged;
-  return EstimateUnbounded(part, fit, noise, *linear,
+  return EstimateUnbounded(part, fit, noise, terms, *linear,
                            converged ? fit.noise.autocorrelation
                                      : AutocorrelationOf(noise, part.clock_scale * part.time, part.value, fit.fitted,
                                                          linear->jacobian(Eigen::all, linear->free), stop));
@@ -124,8 +124,8 @@ std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const 
 /// One step to the maximum of the likelihood without bounds. An estimate cut off at a bound is not normally
 /// distributed, and the other estimates depend on it.
 UnboundedEstimate EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
-                                    const LinearFit& linear, const Autocorrelation& autocorrelation) {
-  const ReadingTerms terms = TermsOf(noise, part.value, fit.fitted);
+                                    const ReadingTerms& terms, const LinearFit& linear,
+                                    const Autocorrelation& autocorrelation) {
   const VectorXd step = linear.influence.transpose() * terms.score;
   const MatrixXd covariance = CovarianceOf(part, linear, noise, terms, autocorrelation);
   UnboundedEstimate estimate;

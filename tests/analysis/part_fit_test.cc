@@ -58,6 +58,38 @@ TEST(Parts, RecoverTheTruthFromANoiseFreePart) {
   EXPECT_THAT(EstimateOf(part, "initial_rate"), DoubleNear(MotionOf(run).Rate(7.13), 1e-5));
 }
 
+// AR(1) noise with 0.5, a quarter of a count: the residuals of rounded readings show 0.201 of its correlations, so the
+// inflation is 1 + 2 * 0.201 = 1.4. Halves of 10 s are often too short to show it.
+TEST(Parts, ShareTheAutocorrelationThatTheWholeRecordingHasShown) {
+  constexpr int kSeeds = 20;
+  SyntheticOptions run = TextbookRun("coulomb");
+  run.resolution = kCount;
+  run.noise = 0.25 * kCount;
+  run.noise_correlation = 0.5;
+  const FitOptions options = ModelOptions("coulomb");
+  int shown = 0;
+  double inflation = 0;
+  for (int i = 0; i < kSeeds; ++i) {
+    ++run.seed;
+    const FitOfRun whole = FitTo(Must(SimulateRecording(run)), options);
+    if (whole.fit.noise.autocorrelation.kind == Autocorrelation::Kind::kWhite) continue;
+    const Parts parts(whole.recording, whole.fit, options);
+    std::vector<PartFit> halves;
+    std::vector<LinearFit> linear;
+    for (const double from : {3.0, 11.0}) {
+      const PartFit& half = halves.emplace_back(parts.Fit(from, from + 7.995, {}));
+      const ReadingTerms terms = TermsOf(parts.NoiseOf(half.fit), half.part.value, half.fit.fitted);
+      linear.push_back(*LinearizeFit(half.part, half.fit, options.rig, terms, {}, false));
+    }
+    const Autocorrelation pooled = parts.PooledAutocorrelation(parts.PooledNoise(halves), halves, linear);
+    EXPECT_NE(pooled.kind, Autocorrelation::Kind::kWhite) << run.seed;
+    inflation += pooled.VarianceInflation();
+    ++shown;
+  }
+  EXPECT_GE(shown, kSeeds / 2);
+  EXPECT_THAT(inflation / shown, RelativelyNear(1.4, 0.15));
+}
+
 TEST(Parts, FixTheHeldParametersAndTheFixedParametersOfTheWholeFit) {
   FitOptions options = ModelOptions("coulomb");
   options.fixed = {{"viscous", 0.0016}};

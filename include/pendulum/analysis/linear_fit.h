@@ -77,10 +77,11 @@ struct UnboundedEstimate {
 std::optional<UnboundedEstimate> EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
                                                    const std::optional<Rig>& rig, const std::stop_token& stop = {});
 
-/// The same of a fit that is linearized already, without bounds and with this noise. `autocorrelation`: that of its
-/// residuals.
+/// The same of a fit that is linearized already, without bounds and with these terms of its readings. noise,
+/// autocorrelation: of its residuals.
 UnboundedEstimate EstimateUnbounded(const Recording& part, const FitReport& fit, const NoiseModel& noise,
-                                    const LinearFit& linear, const Autocorrelation& autocorrelation);
+                                    const ReadingTerms& terms, const LinearFit& linear,
+                                    const Autocorrelation& autocorrelation);
 
 /// dᵀ C⁻¹ d, with C scaled to unit diagonal; NaN unless C is positive definite.
 double SquaredLength(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);

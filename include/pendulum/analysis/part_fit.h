@@ -48,7 +48,7 @@ class Parts {
 
   /// The autocorrelation of the residuals of parts that follow each other, with that noise. The residuals of the whole
   /// fit would include its misfit, and one part alone may be too short to show any autocorrelation. If the residuals of
-  /// the whole fit are not white, white is excluded; where that is because of a misfit, the estimate is nearly white.
+  /// the whole fit are not white, white is no candidate.
   Autocorrelation PooledAutocorrelation(const NoiseModel& noise, const std::vector<PartFit>& fits,
                                         const std::vector<LinearFit>& linear) const;
 
