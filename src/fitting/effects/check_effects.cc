@@ -321,10 +321,11 @@ bool MayCorrect(const FitProblem& problem, const NoiseModel& noise) {
   return problem.censored == 0 && noise.family != NoiseFamily::kEdges && noise.family != NoiseFamily::kAveraged;
 }
 
-/// Whether residuals are smooth enough for tests: with hardly any noise they are rounding errors of a smooth curve.
+/// Whether residuals are smooth enough for tests: with hardly any noise they are rounding errors of a smooth curve. The
+/// readings of a mean are rounded to counts, which are coarser than the levels of means.
 bool MayTest(const NoiseModel& noise, double resolution) {
   constexpr double kSmooth = 0.12;
-  return noise.family == NoiseFamily::kEdges || noise.sigma > kSmooth * resolution;
+  return noise.family == NoiseFamily::kEdges || noise.sigma > kSmooth * std::max(resolution, noise.averaging.count);
 }
 
 /// The correction by the named and the former causes together.
