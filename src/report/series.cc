@@ -15,6 +15,7 @@
 #include "pendulum/closed_form/turning_points.h"
 #include "pendulum/model/parameter.h"
 #include "pendulum/report/json_parts.h"
+#include "pendulum/report/shown_motion.h"
 
 namespace pendulum {
 namespace {
@@ -127,39 +128,17 @@ Json ModelJson(const Recording& used, const FitReport& fit, const TextbookOverla
   return json;
 }
 
-/// Whether the samples do not show the motion: they are not angles, some are missing, or a period has few of them.
-bool HidesMotion(const Recording& used, const std::optional<Sampling>& sampling) {
-  constexpr double kFewPerPeriod = 12;
-  if (used.quantity != Quantity::kAngle) return true;
-  if (!sampling) return false;
-  const double per_period = sampling->samples_per_period;  // 0: unknown
-  return sampling->gaps > 0 || (per_period > 0 && per_period < kFewPerPeriod);
-}
-
 /// The fitted motion at equal steps; null if there is none or its trajectory cannot be computed.
 Json MotionJson(const Recording& used, const FitReport& fit, const std::optional<Rig>& rig, SeriesDetail detail) {
-  constexpr double kPointsPerPeriod = 60;  // straight lines between them are off by at most 0.14 % of the amplitude
-  const double max_steps = detail == SeriesDetail::kAll ? 1e5 : 2e4;
-  if (fit.termination == Termination::kFailed || fit.parameters.empty()) return nullptr;
-  const double first = used.time[0], last = used.time[used.size() - 1];
-  const ParameterEstimate* const release = fit.Find(kReleaseTime.name);
-  const double start = release == nullptr ? first : std::max(first, release->estimate);
-  const FittedMotion motion(used, fit, rig);
-  const std::optional<Trajectory> trajectory = motion.Trace();
-  if (!trajectory || !(start < last)) return nullptr;
-  const double duration = used.clock_scale * (last - start);  // true s
-  const double steps = std::ceil(std::min(max_steps, kPointsPerPeriod * duration / motion.small_angle_period()));
-  const double from_first = used.clock_scale * (start - first);
-  const Eigen::VectorXd instants =
-      Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(steps) + 1, from_first, from_first + duration);
-  const std::optional<Eigen::VectorXd> readings = motion.Readings(instants);
+  const std::optional<ShownMotion> motion = MotionToShow(used, fit, rig, detail == SeriesDetail::kAll ? 1e5 : 2e4);
+  if (!motion) return nullptr;
   Json json;
-  json["start_s"] = start;
-  json["interval_s"] = (last - start) / steps;
+  json["start_s"] = motion->start;
+  json["interval_s"] = motion->interval;
   json["angle_unit"] = fit.parameters[PhysicalParameters(fit.model).size()].unit;
-  json["angle"] = NumbersJson(instants.unaryExpr([&](double t) { return trajectory->Angle(t); }), detail);
-  json["rate"] = NumbersJson(instants.unaryExpr([&](double t) { return trajectory->Rate(t); }), detail);
-  json["reading"] = readings ? NumbersJson(*readings, detail) : Json(nullptr);
+  json["angle"] = NumbersJson(motion->angle, detail);
+  json["rate"] = NumbersJson(motion->rate, detail);
+  json["reading"] = motion->reading.size() > 0 ? NumbersJson(motion->reading, detail) : Json(nullptr);
   return json;
 }
 
@@ -168,7 +147,7 @@ Json MotionsJson(const Identification& identification, std::size_t k, SeriesDeta
   const IdentifiedRecording& recording = identification.recordings[k];
   const Recording& used = recording.used;
   Json json;
-  if (!HidesMotion(used, recording.sampling)) return json;
+  if (!HidesMotion(recording)) return json;
   for (std::size_t m = 0; m < identification.fits.size(); ++m) {
     const FitReport& fit = identification.FitOf(k, m);
     json[std::string(fit.model.name)] = MotionJson(used, fit, identification.si_rig(), detail);

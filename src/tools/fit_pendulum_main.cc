@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gflags/gflags.h>
@@ -12,6 +13,7 @@
 
 #include "pendulum/base/try.h"
 #include "pendulum/fitting/fit/fit.h"
+#include "pendulum/report/fit_plot.h"
 #include "pendulum/report/json.h"
 #include "pendulum/report/markdown.h"
 #include "pendulum/report/result_summary.h"
@@ -73,6 +75,9 @@ std::vector<ToolFlag<Flags>> FlagTable() {
        "Where to write samples, turning points and models as JSON; - is standard output; default nowhere."},
       {"report", &Flags::report,
        "Where to write the result as a page (HTML, one file); - is standard output; default nowhere."},
+      {"plot", &Flags::plot,
+       "Where to write a picture of swing, fit and residuals: a file that ends in .svg, .png or .pdf (needs gnuplot); "
+       "default nowhere."},
       {"markdown", &Flags::markdown, "Where to write the result as Markdown; - is standard output; default nowhere."},
       {"details", &Flags::details, "Prints all of the result, and its summary last; default: the summary alone."},
       {"quiet", &Flags::quiet,
@@ -82,15 +87,23 @@ std::vector<ToolFlag<Flags>> FlagTable() {
   };
 }
 
-/// Adds the outputs of run `index` (0-based) of `count`, except the text for standard output.
-void RenderFiles(const FitPendulumOptions& options, const Identification& run, int index, int count,
-                 std::vector<Output>& outputs) {
+/// Adds the outputs of run `index` (0-based) of `count`, except the text for standard output. Errors as RunGnuplot.
+Result<void> RenderFiles(const FitPendulumOptions& options, const Identification& run, int index, int count,
+                         std::vector<Output>& outputs) {
   const auto recordings = static_cast<int>(run.recordings.size());
   if (!options.json.empty()) outputs.push_back({NumberedPath(options.json, index, count), ToJsonText(run)});
-  for (int k = 0; k < recordings && !options.residuals.empty(); ++k) {
-    const std::string path =
-        run.is_joint() ? NumberedPath(options.residuals, k, recordings) : NumberedPath(options.residuals, index, count);
-    outputs.push_back({path, ToResidualCsv(run, static_cast<std::size_t>(k), run.MainFit())});
+  for (int k = 0; k < recordings; ++k) {
+    const auto path_of = [&](const std::string& path) {
+      return run.is_joint() ? NumberedPath(path, k, recordings) : NumberedPath(path, index, count);
+    };
+    const auto at = static_cast<std::size_t>(k);
+    if (!options.residuals.empty()) {
+      outputs.push_back({path_of(options.residuals), ToResidualCsv(run, at, run.MainFit())});
+    }
+    if (!options.plot.empty()) {
+      ASSIGN_OR_RETURN(auto picture, RunGnuplot(FitPlot(run, at, run.MainFit(), *PictureFormatOf(options.plot))));
+      outputs.push_back({path_of(options.plot), std::move(picture)});
+    }
   }
   if (!options.series.empty()) {
     outputs.push_back({NumberedPath(options.series, index, count), ToSeriesJsonText(run)});
@@ -101,6 +114,7 @@ void RenderFiles(const FitPendulumOptions& options, const Identification& run, i
   if (!options.markdown.empty()) {
     outputs.push_back({NumberedPath(options.markdown, index, count), ToMarkdown(run)});
   }
+  return {};
 }
 
 constexpr const char* kMore = "More: --details (all of it), --report fit.html (plots), --json fit.json.";
@@ -149,7 +163,7 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
       PrintError(kName, run.error());
       continue;
     }
-    RenderFiles(options, *run, i, count, outputs);
+    RETURN_IF_ERROR(RenderFiles(options, *run, i, count, outputs));
     ASSIGN_OR_RETURN(const auto part, TextOf(options, *run));
     text += (text.empty() ? "" : "\n") + part;
     if (options.quiet) PrintVerdict(*run);
@@ -167,8 +181,9 @@ Result<std::vector<Output>> Render(const FitPendulumOptions& options, const std:
 Result<int> Work(const Flags& flags) {
   ASSIGN_OR_RETURN(auto options, MakeFitPendulumOptions(flags));
   ASSIGN_OR_RETURN(const auto setup, ReadSetup(options));
-  if (const auto plots = options.terminal_plot ? CheckGnuplot() : Result<void>(); !plots) {
-    return Within("--terminal_plot", plots.error());
+  const bool needs_gnuplot = options.terminal_plot || !options.plot.empty();
+  if (const auto plots = needs_gnuplot ? CheckGnuplot() : Result<void>(); !plots) {
+    return Within(options.terminal_plot ? "--terminal_plot" : "--plot", plots.error());
   }
   auto checked = CheckOutputs(options.Outputs(), setup.inputs);
   if (checked) checked = CheckNumberedOutputs(options, setup, setup.paths.size());

@@ -9,6 +9,7 @@
 #include "pendulum/analysis/fit_models.h"
 #include "pendulum/base/format.h"
 #include "pendulum/base/try.h"
+#include "pendulum/report/fit_plot.h"
 #include "pendulum/request/flag_values.h"
 
 namespace pendulum {
@@ -50,8 +51,14 @@ Result<void> CheckClosedFormOnly(const FitPendulumFlags& flags) {
   if (!flags.closed_form_only) return {};
   if (!flags.shared.empty() && flags.shared != "none") return NeedsFitError("--shared");
   if (!flags.residuals.empty()) return NeedsFitError("--residuals");
+  if (!flags.plot.empty()) return NeedsFitError("--plot");
   if (flags.terminal_plot) return NeedsFitError("--terminal_plot");
   return {};
+}
+
+Result<void> CheckPlot(const FitPendulumFlags& flags) {
+  if (flags.plot.empty() || PictureFormatOf(flags.plot)) return {};
+  return BadFlag("--plot '" + flags.plot + "' must end in .svg, .png or .pdf, which says what the picture is");
 }
 
 /// Parses the parameters that recordings share; the default is all of inertia and friction.
@@ -91,6 +98,7 @@ std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
   std::vector<NamedFile> outputs;
   if (!json.empty()) outputs.push_back({"--json", NumberedPath(json, index, count)});
   if (!residuals.empty()) outputs.push_back({"--residuals", NumberedPath(residuals, index, count)});
+  if (!plot.empty()) outputs.push_back({"--plot", NumberedPath(plot, index, count)});
   if (!series.empty()) outputs.push_back({"--series", NumberedPath(series, index, count)});
   if (!report.empty()) outputs.push_back({"--report", NumberedPath(report, index, count)});
   if (!markdown.empty()) outputs.push_back({"--markdown", NumberedPath(markdown, index, count)});
@@ -99,9 +107,11 @@ std::vector<NamedFile> FitPendulumOptions::Outputs(int index, int count) const {
 
 std::vector<NamedFile> FitPendulumOptions::JointOutputs(int recordings) const {
   std::vector<NamedFile> outputs = Outputs();
-  std::erase_if(outputs, [](const NamedFile& output) { return output.flag == "--residuals"; });
-  for (int k = 0; k < recordings && !residuals.empty(); ++k) {
-    outputs.push_back({"--residuals", NumberedPath(residuals, k, recordings)});
+  std::erase_if(outputs,
+                [](const NamedFile& output) { return output.flag == "--residuals" || output.flag == "--plot"; });
+  for (int k = 0; k < recordings; ++k) {
+    if (!residuals.empty()) outputs.push_back({"--residuals", NumberedPath(residuals, k, recordings)});
+    if (!plot.empty()) outputs.push_back({"--plot", NumberedPath(plot, k, recordings)});
   }
   return outputs;
 }
@@ -128,6 +138,7 @@ Result<FitPendulumOptions> MakeFitPendulumOptions(const FitPendulumFlags& given)
   FitPendulumOptions options;
   RETURN_IF_ERROR(CheckData(flags));
   RETURN_IF_ERROR(CheckText(flags));
+  RETURN_IF_ERROR(CheckPlot(flags));
   RETURN_IF_ERROR(CheckClosedFormOnly(flags));
   ASSIGN_OR_RETURN(auto sensor, ReadSensorFile(flags.sensor));
   ASSIGN_OR_RETURN(auto run, MakeIdentifyOptions(flags));

@@ -17,6 +17,7 @@ struct FitOutputs {
   std::string residuals;       ///< Path of samples and fit.
   std::string series;          ///< Path of samples, fit, turning points and models.
   std::string report;          ///< Path of the HTML page with all results.
+  std::string plot;            ///< Path of the picture.
   std::string markdown;        ///< Path of the result as Markdown.
   bool terminal_plot = false;  ///< Plots the recording on standard output.
   bool details = false;        ///< Prints all of the result, not only its summary.
@@ -47,7 +48,7 @@ struct FitPendulumOptions : IdentifyOptions, FitOutputs {
   /// The output files of fit `index` (0-based) of `count`, with their flags; numbered if there are several fits.
   std::vector<NamedFile> Outputs(int index = 0, int count = 1) const;
 
-  /// The output files of one joint fit of `recordings`; the residuals of each recording are numbered.
+  /// The output files of one joint fit of `recordings`; residuals and picture of each recording are numbered.
   std::vector<NamedFile> JointOutputs(int recordings) const;
 
   /// Whether this many recordings are fitted together.

@@ -2,9 +2,6 @@
 #include "pendulum/report/terminal_plot.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -14,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "pendulum/base/physics.h"
+#include "tests/report/gnuplot_output.h"
 
 namespace pendulum::terminal_plot_test {
 namespace {
@@ -39,18 +37,10 @@ Drawn Swing(double frequency, int samples) {
   return drawn;
 }
 
-/// gnuplot's output for the script, line by line; uses temporary files and a shell.
+/// gnuplot's output for the script, line by line.
 std::vector<std::string> Draw(const Drawn& drawn) {
-  const std::string script = testing::TempDir() + "terminal_plot_test.gp";
-  std::ofstream(script) << TerminalPlot(drawn.used, drawn.fit);
-  std::FILE* output = ::popen(("gnuplot -d " + script + " 2>&1").c_str(), "r");
-  EXPECT_NE(output, nullptr);
-  std::string picture;
-  std::array<char, 4096> block{};
-  while (std::fgets(block.data(), block.size(), output) != nullptr) picture += block.data();
-  EXPECT_EQ(::pclose(output), 0) << picture;
   std::vector<std::string> lines;
-  std::istringstream text(PictureText(picture));
+  std::istringstream text(PictureText(GnuplotOutput(TerminalPlot(drawn.used, drawn.fit))));
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
 }

@@ -254,6 +254,16 @@ class GoodRun(CliTest):
             difference = float(row["measured_rad"]) - float(row["fitted_rad"])
             self.assertAlmostEqual(float(row["residual_rad"]), difference, delta=1e-15)
 
+    def test_plot_is_the_picture_that_its_name_says(self):
+        for name, begin in (("fit.svg", b"<?xml"), ("fit.png", b"\x89PNG"), ("fit.pdf", b"%PDF")):
+            self.fit("--plot", name)
+            self.assertTrue((self.folder / name).read_bytes().startswith(begin), name)
+
+    def test_plot_needs_a_name_that_says_its_kind_and_a_fit(self):
+        self.assert_flags_refused("--plot 'fit.jpg' must end in .svg, .png or .pdf", "--data", "run.csv", "--plot", "fit.jpg")
+        self.assert_flags_refused("--plot needs a fit, but --closed_form_only makes none", "--data", "run.csv",
+                                  "--closed_form_only", "--plot", "fit.svg")
+
     def test_result_compares_the_fit_with_closed_forms(self):
         _, result = self.fit("--rig", "rig.json")
         (recording,) = result["recordings"]

@@ -148,6 +148,11 @@ class JointFit(JointTest):
         self.assertLess(first, second)
         self.assertLess(second, run.stdout.index("[[2 recordings of one rig]]"))
 
+    def test_plot_draws_each_recording_into_a_file_of_its_own(self):
+        self.fit("--data", "a.csv,b.csv", "--plot", "fit.svg")
+        for number, name in ((1, "a.csv"), (2, "b.csv")):
+            self.assertIn(f"recording {number} ({name})", self.read(f"fit_00{number}.svg"))
+
     def test_recordings_of_a_list_are_fitted_together(self):
         self.write("list.txt", "# two\na.csv\n\nb.csv\n")
         listed = self.fit("--data_list", "list.txt", "--rig", "rig.json", "--json", "-").stdout
