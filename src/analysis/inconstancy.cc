@@ -83,18 +83,12 @@ void AddToDerived(const ParameterEstimate& changing, ErrorSource source, double 
   const auto ratio = std::ranges::find(fit.derived, "gravity_over_inertia", &DerivedQuantity::name);
   if (ratio == fit.derived.end()) return;
   const double gravity = ratio->estimate * fit.Find(kInertia.name)->estimate;
+  const double error = std_dev / (changing.info.scales_with_gravity() ? gravity : 1);
   const auto count = static_cast<Index>(fit.parameters.size());
-  std::vector<ParameterInfo> infos;
-  std::vector<double> ratios;
+  const Index i = &changing - fit.parameters.data();
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  for (Index i = 0; i < count; ++i) {
-    const ParameterEstimate& parameter = fit.parameters[static_cast<std::size_t>(i)];
-    const double unit = parameter.info.scales_with_gravity() ? gravity : 1;
-    infos.push_back(parameter.info);
-    ratios.push_back(parameter.estimate / unit);
-    if (&parameter == &changing) covariance(i, i) = std_dev * std_dev / (unit * unit);
-  }
-  AddSystematicErrors(infos, ratios, source, covariance, fit.derived);
+  covariance(i, i) = error * error;
+  AddSystematicErrors(source, covariance, fit.derived);
 }
 
 /// Adds a systematic error of this parameter that is independent of all other errors.

@@ -15,6 +15,7 @@
 #include "pendulum/base/format.h"
 #include "pendulum/base/rounding.h"
 #include "pendulum/fitting/fit/fit_warnings.h"
+#include "pendulum/model/friction/coulomb.h"
 #include "pendulum/model/friction/dahl.h"
 #include "pendulum/model/friction/stribeck.h"
 #include "pendulum/report/budget_sections.h"
@@ -24,9 +25,14 @@
 #include "pendulum/report/layout.h"
 #include "pendulum/report/suspicion_sections.h"
 #include "pendulum/report/text_parts.h"
+#include "pendulum/trajectory/energy_losses.h"
 
 namespace pendulum {
 namespace {
+
+void AddListed(const std::string& item, std::string& list) {
+  if (!item.empty()) list += (list.empty() ? "" : ", ") + item;
+}
 
 // ---- Quantities -----------------------------------------------------------------------------------------------------
 
@@ -136,6 +142,38 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
   return derived;
 }
 
+// ---- Losses ---------------------------------------------------------------------------------------------------------
+
+/// "62 ± 3 %".
+std::string ShareText(const DerivedQuantity& share) {
+  const double percent = 100 * share.estimate;
+  const auto total = TotalStdError(share.std_error, share.systematic);
+  const std::string blank(kNoBreak);
+  if (!total || !(*total > 0)) return FixedText(percent, 1) + blank + "%";
+  const ValueAndError text = PdgText(percent, 100 * *total);
+  return text.value + blank + "±" + blank + text.error + blank + "%";
+}
+
+/// "viscous friction", "dry friction".
+std::string LossWords(const FitReport& fit, std::string_view name) {
+  const ParameterEstimate* const parameter = fit.Find(name);
+  return std::string(parameter == nullptr ? kCoulomb.words : parameter->info.words);
+}
+
+/// "Viscous friction took 62 ± 3 % of the energy lost, dry friction 38 ± 3 % (first half swing: 71 ± 2 %, 29 ± 2 %)."
+std::string LossesText(const FitReport& fit) {
+  std::string whole, first;
+  for (const std::string& name : LossNames(fit.model)) {
+    const auto of_whole = std::ranges::find(fit.derived, name + "_loss", &DerivedQuantity::name);
+    if (of_whole == fit.derived.end()) return "";
+    const std::string words = LossWords(fit, name), share = std::string(kNoBreak) + ShareText(*of_whole);
+    AddListed(whole.empty() ? Capitalized(words) + " took" + share + " of the energy lost" : words + share, whole);
+    const auto of_first = std::ranges::find(fit.derived, name + "_loss_first_half_swing", &DerivedQuantity::name);
+    if (of_first != fit.derived.end()) AddListed(ShareText(*of_first), first);
+  }
+  return whole + (first.empty() ? "" : " (first half swing: " + first + ")") + ".";
+}
+
 // ---- Remarks on parameters ------------------------------------------------------------------------------------------
 
 bool IsPhysical(const FitReport& fit, const ParameterEstimate& parameter) {
@@ -164,10 +202,6 @@ bool MayBeZero(const ParameterEstimate& parameter) {
                        parameter.info.name != kPreslidingAngle.name;
   const auto interval = TotalIntervalOf(parameter);
   return is_term && !parameter.at_bound && interval && interval->lower <= 0 && interval->upper >= 0;
-}
-
-void AddListed(const std::string& item, std::string& list) {
-  if (!item.empty()) list += (list.empty() ? "" : ", ") + item;
 }
 
 /// "viscous 40 %": how far friction of another law that the readings do not show would change an estimate.
@@ -549,6 +583,7 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
     summary.remarks += (summary.remarks.empty() ? "" : " ") + changing;
     EraseWarnings("not_constant", summary);
   }
+  summary.losses = LossesText(fit);
   summary.derived = DerivedOf(fit);
   if (identification.SharesMotion(index)) {
     summary.equation = WithoutZeroTerms(FittedEquation(fit, identification.si_rig(), EquationDigits::kOfTotalError));
@@ -618,6 +653,7 @@ nlohmann::ordered_json FitSummaryJson(const FitSummary& summary) {
           {"equation", summary.equation},
           {"units", summary.units},
           {"textbook", summary.textbook},
+          {"losses", WithBlanks(summary.losses)},
           {"remarks", WithBlanks(summary.remarks)},
           {"advice", WithBlanks(summary.advice)},
           {"assumptions", std::move(assumptions)},

@@ -30,13 +30,15 @@ enum class Folding {
   kAdvice,            // Nothing on the largest error.
   kReasons,           // The textbook's values have no reasons.
   kTextbook,          // No textbook's values.
-  kTogether           // Remarks and assumptions are in one paragraph, without what no swing can tell.
+  kHalfSwing,         // No losses of the first half swing.
+  kTogether,          // Remarks and assumptions are in one paragraph, without what no swing can tell.
+  kLosses             // No losses.
 };
 
-constexpr std::array kFoldings = {Folding::kNone,     Folding::kSensorParameters, Folding::kAsides,
-                                  Folding::kWarnings, Folding::kRemarks,          Folding::kNames,
-                                  Folding::kEquation, Folding::kParagraphs,       Folding::kAdvice,
-                                  Folding::kReasons,  Folding::kTextbook,         Folding::kTogether};
+constexpr std::array kFoldings = {
+    Folding::kNone,     Folding::kSensorParameters, Folding::kAsides,     Folding::kWarnings, Folding::kRemarks,
+    Folding::kNames,    Folding::kEquation,         Folding::kParagraphs, Folding::kAdvice,   Folding::kReasons,
+    Folding::kTextbook, Folding::kHalfSwing,        Folding::kTogether,   Folding::kLosses};
 
 /// Adds a sentence or a list item to a text.
 void Join(const std::string& more, std::string_view separator, std::string& text) {
@@ -200,6 +202,11 @@ Section& AddComparison(const ResultSummary& summary, Section& section) {
   return section.AddText(summary.without_result);
 }
 
+std::string LossesText(const FitSummary& fit, Folding folding) {
+  if (folding >= Folding::kLosses) return "";
+  return folding >= Folding::kHalfSwing ? WithoutAsides(fit.losses) : fit.losses;
+}
+
 std::string TextbookText(const FitSummary& fit, Folding folding) {
   if (folding >= Folding::kTextbook) return "";
   return folding >= Folding::kReasons ? WithoutAsides(fit.textbook) : fit.textbook;
@@ -208,7 +215,8 @@ std::string TextbookText(const FitSummary& fit, Folding folding) {
 /// Adds the remarks as paragraphs, or returns them as one.
 std::string AddRemarks(const FitSummary& fit, Folding folding, Section& section) {
   std::string text;
-  std::string remarks = OmittedText(fit, folding);
+  std::string remarks = LossesText(fit, folding);
+  Join(OmittedText(fit, folding), " ", remarks);
   Join(fit.remarks, " ", remarks);
   if (folding < Folding::kAdvice) Join(fit.advice, " ", remarks);
   for (std::string part : {std::move(remarks), DerivedText(fit), TextbookText(fit, folding)}) {

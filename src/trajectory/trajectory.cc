@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/try.h"
 #include "pendulum/model/friction/registry.h"
 
 namespace pendulum {
@@ -36,25 +37,19 @@ double Trajectory::Acceleration(double time) const {
   return acceleration;
 }
 
-Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
-                                  const Start<double>& start, const TraceOptions& options) {
+Result<void> CheckParameters(const MotionModel& model, std::span<const double> parameters) {
   if (parameters.size() != PhysicalParameters(model).size()) {
     return Error(StatusCode::kInvalidArgument, "model " + std::string(model.name) + " takes " +
                                                    std::to_string(PhysicalParameters(model).size()) +
                                                    " parameters, not " + std::to_string(parameters.size()));
   }
-  if (!(parameters[0] > 0)) {
-    return Error(StatusCode::kInvalidArgument, "inertia is " + NumberText(parameters[0]) + "; it must be positive");
-  }
-  Trajectory trajectory;
-  FrictionModels::Visit(model.friction, [&]<typename F>() {
-    Pendulum<F, double> pendulum{model.gravity, parameters[0], {}};
-    std::copy(parameters.begin() + 1, parameters.end(), pendulum.friction.begin());
-    trajectory.set_summary(
-        TraceTrajectory(pendulum, start, options, [&](const Segment<double>& segment) { trajectory.Append(segment); }));
-  });
-  switch (trajectory.summary().outcome) {
-    case TraceSummary::Outcome::kComplete: return trajectory;
+  if (parameters[0] > 0) return {};
+  return Error(StatusCode::kInvalidArgument, "inertia is " + NumberText(parameters[0]) + "; it must be positive");
+}
+
+Result<void> CheckTraced(const TraceSummary& summary) {
+  switch (summary.outcome) {
+    case TraceSummary::Outcome::kComplete: return {};
     case TraceSummary::Outcome::kNeverMoved:
       return Error(StatusCode::kFailedPrecondition,
                    "friction holds the pendulum where it starts, so it never moves; release it from a larger angle, or "
@@ -64,6 +59,20 @@ Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const doub
   return Error(
       StatusCode::kFailedPrecondition,
       "the motion cannot be computed with these parameters, because its time scale is too short for the duration");
+}
+
+Result<Trajectory> MakeTrajectory(const MotionModel& model, std::span<const double> parameters,
+                                  const Start<double>& start, const TraceOptions& options) {
+  RETURN_IF_ERROR(CheckParameters(model, parameters));
+  Trajectory trajectory;
+  FrictionModels::Visit(model.friction, [&]<typename F>() {
+    Pendulum<F, double> pendulum{model.gravity, parameters[0], {}};
+    std::copy(parameters.begin() + 1, parameters.end(), pendulum.friction.begin());
+    trajectory.set_summary(
+        TraceTrajectory(pendulum, start, options, [&](const Segment<double>& segment) { trajectory.Append(segment); }));
+  });
+  RETURN_IF_ERROR(CheckTraced(trajectory.summary()));
+  return trajectory;
 }
 
 }  // namespace pendulum

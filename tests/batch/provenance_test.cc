@@ -132,7 +132,8 @@ TEST(OptionsJson, DependsOnEveryOption) {
 // members are in neither list: `model` is the first of `models`; rig and calibration are hashed separately; `window` of
 // the reader is that of the swing; `notes` are warnings; a rig chooses the gravity, and `is_spring` is set, only by
 // what `gravity` and the models say; `preview` receives what the reader sees;
-// users cannot set `start_values`, `sensor_start` and `may_doubt_gravity`, and `may_correct` follows from `models`;
+// users cannot set `start_values`, `sensor_start` and `may_doubt_gravity`, and `may_correct` follows from `models`,
+// `with_losses` from `checks`;
 // `shared` is for joint identifications, of which a batch has none.
 TEST(OptionsJson, CoversEveryMember) {
   IdentifyOptions options;
@@ -142,7 +143,7 @@ TEST(OptionsJson, CoversEveryMember) {
                           averaging_window, window, most_unpacked_bytes, preview] = read;
   [[maybe_unused]] auto& [from, to, release, is_spring] = swing;
   [[maybe_unused]] auto& [model, gravity, may_be_spring, start, rig, fixed, initial, bounds, priors, noise, interval,
-                          seed, threads, progress, search, stop] = fit;
+                          with_losses, seed, threads, progress, search, stop] = fit;
   [[maybe_unused]] auto& [start_values, sensor_start, vibration_period, max_trace_error, max_iterations, max_traces,
                           may_correct, may_doubt_gravity] = search;
 }

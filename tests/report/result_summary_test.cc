@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pendulum/report/layout.h"
 #include "tests/identify/example_joint_identification.h"
 
 namespace pendulum::result_summary_test {
@@ -16,6 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::Each;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -121,6 +123,32 @@ TEST(SummarizeFit, OmitsAnIntervalThatContains0) {
     identification.fits[0].derived = {decay};
     EXPECT_EQ(SummarizeFit(identification, 0).derived.size(), is_shown ? 1 : 0) << systematic;
   }
+}
+
+/// A share of the energy that was lost, with its standard error.
+DerivedQuantity Share(std::string name, double share, std::optional<double> std_error) {
+  return {std::move(name), "1", share, std_error};
+}
+
+TEST(SummarizeFit, SaysWhatTookTheEnergy) {
+  Identification identification = ExampleIdentification();
+  FitReport& fit = identification.fits[0];
+  fit.derived = {Share("viscous_loss", 0.6213, 0.031), Share("dry_loss", 0.3787, 0.031)};
+  fit.derived[1].systematic.Add(ErrorSource::kSensor, 0.05);
+  EXPECT_EQ(WithBlanks(SummarizeFit(identification, 0).losses),
+            "Viscous friction took 62.1 ± 3.1 % of the energy lost, dry friction 38 ± 6 %.");
+  fit.derived.push_back(Share("viscous_loss_first_half_swing", 0.7112, 0.02));
+  fit.derived.push_back(Share("dry_loss_first_half_swing", 0.2888, 0.02));
+  EXPECT_THAT(WithBlanks(SummarizeFit(identification, 0).losses),
+              EndsWith("6 % (first half swing: 71.1 ± 2.0 %, 28.9 ± 2.0 %)."));
+}
+
+TEST(SummarizeFit, SaysLossesWithoutErrorsAtABoundAndNothingOfOneLoss) {
+  Identification identification = ExampleIdentification();
+  EXPECT_EQ(SummarizeFit(identification, 0).losses, "");
+  identification.fits[0].derived = {Share("viscous_loss", 1, {}), Share("dry_loss", 0, {})};
+  EXPECT_EQ(WithBlanks(SummarizeFit(identification, 0).losses),
+            "Viscous friction took 100.0 % of the energy lost, dry friction 0.0 %.");
 }
 
 TEST(SummarizeFit, GivesAnglesInDegrees) {

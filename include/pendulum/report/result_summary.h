@@ -37,6 +37,7 @@ struct FitSummary {
   std::string law;        ///< The law of the parameters; empty without a fit.
   std::vector<SummaryQuantity> parameters;
   bool has_systematic = false;           ///< Whether any error is more than statistical.
+  std::string losses;                    ///< What took the energy, with shares; empty for a law with one loss.
   std::vector<SummaryQuantity> derived;  ///< Period, decay time, quality factor; g or lengths if the rig asks for them.
   std::string equation;                  ///< With numbers.
   std::string units;                     ///< What gives SI units, if there are none; else empty.

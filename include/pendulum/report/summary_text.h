@@ -15,7 +15,8 @@ Section SummarySection(const ResultSummary& summary);
 /// The summary as text for a terminal, in at most 20 lines of 80 columns besides those of a comparison of laws. If
 /// there are more, it says the same in fewer lines: parameters of the sensor share a line, then warnings, remarks and
 /// derived quantities share paragraphs. At last warnings that are not serious are only named, and the equation, the
-/// reasons of the textbook's values and these values are left out. `more`: a last line that says where to find more.
+/// reasons of the textbook's values, these values and the shares of the losses are left out. `more`: a last line that
+/// says where to find more.
 std::string SummaryText(const ResultSummary& summary, const std::string& more, TextStyle style = {});
 
 }  // namespace pendulum

@@ -97,6 +97,12 @@ class Trajectory {
   TraceSummary summary_;
 };
 
+/// Whether MakeTrajectory can take these parameters; its kInvalidArgument.
+Result<void> CheckParameters(const MotionModel& model, std::span<const double> parameters);
+
+/// Whether a motion was traced to its end; MakeTrajectory's kFailedPrecondition.
+Result<void> CheckTraced(const TraceSummary& summary);
+
 /// Traces a model chosen by name. `parameters` are those of PhysicalParameters(model) in units of the restoring torque
 /// G. kInvalidArgument: wrong number of parameters, or inertia not positive. kFailedPrecondition: the pendulum never
 /// moves, or the motion cannot be traced.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -186,7 +187,8 @@ void SetDerived(const FittedRun& run, const Optimum& optimum, const Errors& erro
   const auto size = static_cast<Index>(problem.infos.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   covariance(optimum.free, optimum.free) = errors.covariance;
-  report.derived = DerivedQuantities(problem.infos, parameters, &covariance, optimum.at_bound);
+  report.derived = DerivedQuantities(problem.infos, parameters);
+  SetDerivedErrors(covariance, optimum.at_bound, report.derived);
   std::vector<IntervalEnds> intervals;
   for (std::size_t i = 0; i < problem.infos.size(); ++i) {
     const ParameterEstimate& parameter = report.parameters[i];
@@ -197,9 +199,14 @@ void SetDerived(const FittedRun& run, const Optimum& optimum, const Errors& erro
     intervals.push_back({internal(parameter.lower95), internal(parameter.upper95)});
   }
   SetDerivedIntervals(problem.infos, parameters, intervals, report.derived);
-  for (const SystematicCovariance& of : covariances) {
-    AddSystematicErrors(problem.infos, parameters, of.kind, of.of_ratios, report.derived);
+  if (run.options.with_losses) {
+    std::vector<DerivedQuantity> shares =
+        LossQuantities(problem.model, report.start, parameters, problem.data.time.back());
+    SetDerivedErrors(covariance, optimum.at_bound, shares);
+    if (errors.t95.size() > 0) SetSymmetricIntervals(errors.t95.maxCoeff(), shares);
+    std::ranges::move(shares, std::back_inserter(report.derived));
   }
+  for (const SystematicCovariance& of : covariances) AddSystematicErrors(of.kind, of.of_ratios, report.derived);
 }
 
 Autocorrelation AutocorrelationOf(const FittedRun& run, const Optimum& optimum, const Description& described) {

@@ -75,7 +75,10 @@ void SetWhole(JointFit& fit) {
                        [&](const Identifiability& known) { return fit.IsShared(known.parameter); });
   // The derived quantities depend on inertia and every friction parameter. They are common to all recordings only if
   // all these parameters are shared.
-  if (fit.shared.size() == PhysicalParameters(whole.model).size()) whole.derived = first.derived;
+  if (fit.shared.size() == PhysicalParameters(whole.model).size()) {
+    std::ranges::copy_if(first.derived, std::back_inserter(whole.derived),
+                         [](const DerivedQuantity& quantity) { return !quantity.is_of_recording; });
+  }
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
   whole.noise = RepresentativeNoise(fit);

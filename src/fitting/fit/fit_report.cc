@@ -66,6 +66,7 @@ FitOptions OptionsLike(const FitReport& fit, FitOptions options) {
   options.start = fit.start;
   options.noise = fit.noise.family;
   options.search.may_correct = false;
+  options.with_losses = false;
   return options;
 }
 

@@ -310,7 +310,7 @@ std::vector<FitReport> MakeFitReports(const SolvedFit& fit, const Optimum* optim
     Description& described = state.descriptions[k];
     FitReport& report = described.report;
     if (!has_errors) {
-      report.derived = DerivedQuantities(run.problem.infos, run.solution.parameters, nullptr, {});
+      report.derived = DerivedQuantities(run.problem.infos, run.solution.parameters);
       const bool is_undetermined = !state.optimum.inverse.identifiable;
       if (is_converged || is_undetermined) SetIdentifiability(run.problem, state.own[k], report);
     }

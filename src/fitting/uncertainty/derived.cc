@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pendulum/base/physics.h"
 #include "pendulum/model/friction/viscous.h"
+#include "pendulum/trajectory/energy_losses.h"
 
 namespace pendulum {
 namespace {
@@ -24,8 +26,8 @@ double ValueOf(const PowerProduct& product, const std::vector<double>& p) {
   return product.factor * std::pow(p[0], product.inertia_power) * std::pow(p[product.other], product.other_power);
 }
 
-double StdError(const PowerProduct& product, const std::vector<double>& p, const Eigen::MatrixXd& covariance) {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance.rows());
+Eigen::VectorXd GradientOf(const PowerProduct& product, const std::vector<double>& p) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));
   gradient[0] = product.inertia_power * ValueOf(product, p) / p[0];
   if (product.other_power != 0) {
     PowerProduct lowered = product;
@@ -33,7 +35,26 @@ double StdError(const PowerProduct& product, const std::vector<double>& p, const
     lowered.other_power -= 1;
     gradient[product.other] = ValueOf(lowered, p);
   }
+  return gradient;
+}
+
+double StdErrorOf(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& covariance) {
   return std::sqrt(std::max(gradient.dot(covariance * gradient), 0.0));
+}
+
+/// Adds the shares of one part of a motion.
+void AddShares(const std::vector<std::string>& names, const std::optional<LossShares>& losses,
+               const std::string& of_what, std::size_t parameters, std::vector<DerivedQuantity>& quantities) {
+  if (!losses) return;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    DerivedQuantity share{names[k] + "_loss" + of_what, "1", std::clamp(losses->share[row], 0.0, 1.0)};
+    share.range = {0, 1};
+    share.gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters));
+    share.gradient.head(losses->gradient.cols()) = losses->gradient.row(row);
+    share.is_of_recording = true;
+    quantities.push_back(std::move(share));
+  }
 }
 
 /// Unit of parameter / inertia: the unit of parameter / G, divided by s^2, the unit of inertia / G.
@@ -92,17 +113,38 @@ class Distances {
 }  // namespace
 
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
-                                               const std::vector<double>& parameters, const Eigen::MatrixXd* covariance,
-                                               const std::vector<int>& at_bound) {
+                                               const std::vector<double>& parameters) {
   std::vector<DerivedQuantity> derived;
   for (const PowerProduct& product : PowerProducts(infos, parameters)) {
     derived.push_back({product.name, product.unit, ValueOf(product, parameters)});
-    const bool bounded = std::find(at_bound.begin(), at_bound.end(), product.other) != at_bound.end();
-    if (covariance == nullptr || bounded) continue;
-    const double error = StdError(product, parameters, *covariance);
-    if (error > 0) derived.back().std_error = error;
+    derived.back().gradient = GradientOf(product, parameters);
   }
   return derived;
+}
+
+std::vector<DerivedQuantity> LossQuantities(const MotionModel& model, StartKind start,
+                                            const std::vector<double>& parameters, double duration) {
+  const std::vector<std::string> names = LossNames(model);
+  const std::size_t of_motion = PhysicalParameters(model).size() + 2;
+  TraceOptions options;
+  options.end = duration;
+  if (names.size() < 2) return {};
+  const Result<EnergyLosses> losses = ComputeEnergyLosses(model, start, {parameters.data(), of_motion}, options);
+  if (!losses) return {};
+  std::vector<DerivedQuantity> quantities;
+  AddShares(names, losses->whole, "", parameters.size(), quantities);
+  AddShares(names, losses->first_half_swing, "_first_half_swing", parameters.size(), quantities);
+  return quantities;
+}
+
+void SetDerivedErrors(const Eigen::MatrixXd& covariance, const std::vector<int>& at_bound,
+                      std::vector<DerivedQuantity>& derived) {
+  for (DerivedQuantity& quantity : derived) {
+    const auto matters = [&](int i) { return quantity.gradient[i] != 0; };
+    if (std::ranges::any_of(at_bound, matters)) continue;
+    const double error = StdErrorOf(quantity.gradient, covariance);
+    if (error > 0) quantity.std_error = error;
+  }
 }
 
 /// Propagates each end of a parameter with the other parameters at their estimates, and adds the distances in
@@ -110,22 +152,29 @@ std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>&
 void SetDerivedIntervals(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
                          const std::vector<IntervalEnds>& intervals, std::vector<DerivedQuantity>& derived) {
   const std::vector<PowerProduct> products = PowerProducts(infos, parameters);
-  for (std::size_t k = 0; k < derived.size(); ++k) {
+  for (std::size_t k = 0; k < products.size(); ++k) {
     const PowerProduct& product = products[k];
     Distances distances;
     distances.Add(product, parameters, 0, intervals[0]);
     if (product.other_power != 0) distances.Add(product, parameters, product.other, intervals[product.other]);
     derived[k].lower95 = distances.Below(derived[k].estimate);
-    if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, 0.0);  // the quantity is never negative
+    if (derived[k].lower95) *derived[k].lower95 = std::max(*derived[k].lower95, derived[k].range.lower);
     derived[k].upper95 = distances.Above(derived[k].estimate);
   }
 }
 
-void AddSystematicErrors(const std::vector<ParameterInfo>& infos, const std::vector<double>& parameters,
-                         ErrorSource source, const Eigen::MatrixXd& covariance, std::vector<DerivedQuantity>& derived) {
-  const std::vector<PowerProduct> products = PowerProducts(infos, parameters);
-  for (std::size_t k = 0; k < products.size(); ++k) {
-    derived[k].systematic.Add(source, StdError(products[k], parameters, covariance));
+void SetSymmetricIntervals(double t95, std::vector<DerivedQuantity>& derived) {
+  for (DerivedQuantity& quantity : derived) {
+    if (!quantity.std_error) continue;
+    quantity.lower95 = std::max(quantity.estimate - t95 * *quantity.std_error, quantity.range.lower);
+    quantity.upper95 = std::min(quantity.estimate + t95 * *quantity.std_error, quantity.range.upper);
+  }
+}
+
+void AddSystematicErrors(ErrorSource source, const Eigen::MatrixXd& covariance, std::vector<DerivedQuantity>& derived) {
+  for (DerivedQuantity& quantity : derived) {
+    if (quantity.gradient.size() == 0) continue;
+    quantity.systematic.Add(source, StdErrorOf(quantity.gradient, covariance));
   }
 }
 

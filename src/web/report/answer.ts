@@ -130,6 +130,7 @@ export function answerPart(fit: Fit, result: Result, swing: HTMLElement | null):
   const more = el(
     'div',
     { class: 'answer-more' },
+    summary.losses ? text(typeset(summary.losses)) : null,
     summary.remarks ? text(typeset(summary.remarks)) : null,
     summary.advice ? text(typeset(summary.advice)) : null,
     derivedList(summary),

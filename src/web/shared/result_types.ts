@@ -74,6 +74,8 @@ export interface FitSummary {
   agreement: string;
   parameters: SummaryQuantity[];
   derived: SummaryQuantity[];
+  /** What took the energy, with shares; empty for a law with one loss, missing in results of former versions. */
+  losses?: string;
   equation: string;
   units: string;
   textbook: string;

@@ -20,7 +20,9 @@ namespace {
 using testing::AllOf;
 using testing::Contains;
 using testing::DoubleNear;
+using testing::ElementsAre;
 using testing::Field;
+using testing::IsEmpty;
 using testing::Key;
 using testing::Not;
 
@@ -30,10 +32,10 @@ Quantities Derived(std::string_view model, const std::vector<double>& parameters
                    const std::vector<int>& at_bound = {}) {
   const std::vector<ParameterInfo> infos =
       FitParameters(Must(FindMotionModel(model)), StartKind::kMoving, Quantity::kAngle);
+  std::vector<DerivedQuantity> derived = DerivedQuantities(infos, parameters);
+  if (covariance != nullptr) SetDerivedErrors(*covariance, at_bound, derived);
   Quantities quantities;
-  for (const DerivedQuantity& quantity : DerivedQuantities(infos, parameters, covariance, at_bound)) {
-    quantities[quantity.name] = quantity;
-  }
+  for (const DerivedQuantity& quantity : derived) quantities[quantity.name] = quantity;
   return quantities;
 }
 
@@ -144,7 +146,7 @@ Quantities WithIntervals(const IntervalEnds& viscous, const IntervalEnds& coulom
                          const IntervalEnds& inertia = {0.0361, 0.0484}) {
   const std::vector<ParameterInfo> infos =
       FitParameters(Must(FindMotionModel("drag")), StartKind::kMoving, Quantity::kAngle);
-  std::vector<DerivedQuantity> derived = DerivedQuantities(infos, kParameters, nullptr, {});
+  std::vector<DerivedQuantity> derived = DerivedQuantities(infos, kParameters);
   SetDerivedIntervals(infos, kParameters, {inertia, viscous, coulomb, {}, {}, {}, {}}, derived);
   Quantities quantities;
   for (const DerivedQuantity& quantity : derived) quantities[quantity.name] = quantity;
@@ -192,6 +194,50 @@ TEST(SetDerivedIntervals, LeavesAnEndOpenIfAParameterLacksIt) {
   EXPECT_TRUE(quantities.at("quality_factor").upper95);
   EXPECT_TRUE(quantities.at("natural_frequency").lower95 && quantities.at("natural_frequency").upper95);
   EXPECT_FALSE(quantities.at("drag_over_inertia").lower95 || quantities.at("drag_over_inertia").upper95);
+}
+
+// ---- Losses --------------------------------------------------------------------------------------------------------
+
+std::vector<DerivedQuantity> LossesOf(std::string_view model, const std::vector<double>& parameters) {
+  return LossQuantities(Must(FindMotionModel(model)), StartKind::kMoving, parameters, 5);
+}
+
+TEST(LossQuantities, AreSharesOfTheWindowAndOfItsFirstHalfSwing) {
+  std::vector<std::string> names;
+  double sum = 0;
+  for (const DerivedQuantity& share : LossesOf("drag", kParameters)) {
+    names.push_back(share.name);
+    sum += share.estimate;
+    EXPECT_EQ(share.gradient.size(), 7) << share.name;
+    EXPECT_EQ(share.gradient[6], 0) << share.name;  // the zero
+  }
+  EXPECT_THAT(names, ElementsAre("viscous_loss", "drag_loss", "dry_loss", "viscous_loss_first_half_swing",
+                                 "drag_loss_first_half_swing", "dry_loss_first_half_swing"));
+  EXPECT_THAT(sum, DoubleNear(2, 1e-12));
+}
+
+TEST(LossQuantities, AreNoneIfThereIsNoChoice) {
+  EXPECT_THAT(LossesOf("viscous", {0.04, 0.002, 0.3, -0.7, 0.01}), IsEmpty());
+  EXPECT_THAT(LossesOf("coulomb", {0.04, 0.002, 5, 0.3, 0, 0.01}), IsEmpty());  // held
+}
+
+TEST(LossQuantities, HaveIntervalsFromZeroToOne) {
+  std::vector<DerivedQuantity> shares = LossesOf("coulomb", {0.04, 0.002, 0.00001, 0.3, -0.7, 0.01});
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(6, 6);
+  covariance(2, 2) = 1e-4;
+  SetDerivedErrors(covariance, {}, shares);
+  SetSymmetricIntervals(2, shares);
+  for (const DerivedQuantity& share : shares) {
+    EXPECT_EQ(*share.lower95, 0) << share.name;
+    EXPECT_EQ(*share.upper95, 1) << share.name;
+  }
+}
+
+TEST(LossQuantities, HaveNoErrorsBesideAParameterAtItsBound) {
+  std::vector<DerivedQuantity> shares = LossesOf("coulomb", {0.04, 0.002, 0, 0.3, -0.7, 0.01});
+  SetDerivedErrors(1e-8 * Eigen::MatrixXd::Identity(6, 6), {2}, shares);
+  SetSymmetricIntervals(2, shares);
+  for (const DerivedQuantity& share : shares) EXPECT_FALSE(share.std_error || share.lower95) << share.name;
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ void WithdrawErrors(std::string_view why, FitReport& fit);
 double Correlation(const FitReport& fit, Eigen::Index row, Eigen::Index column);
 
 /// `options` with the kind of start and the noise family of `fit`, for refits that must be comparable with it. They
-/// do not correct their readings.
+/// do not correct their readings, and their losses are not of interest.
 FitOptions OptionsLike(const FitReport& fit, FitOptions options);
 
 }  // namespace pendulum

@@ -61,9 +61,10 @@ struct FitOptions {
   /// resolution, otherwise kGaussian.
   std::optional<NoiseFamily> noise;
   IntervalMethod interval = IntervalMethod::kAuto;
-  std::uint64_t seed = 1;  ///< For the bootstrap and posterior sampling.
-  int threads = 0;         ///< For the bootstrap and long recordings; 0: all cores. The result does not depend on it.
-  ProgressSink progress;   ///< Told of each fit, comparison and test, and how far a bootstrap is.
+  bool with_losses = false;  ///< Whether the derived quantities contain the shares of the losses (LossQuantities).
+  std::uint64_t seed = 1;    ///< For the bootstrap and posterior sampling.
+  int threads = 0;           ///< For the bootstrap and long recordings; 0: all cores. The result does not depend on it.
+  ProgressSink progress;     ///< Told of each fit, comparison and test, and how far a bootstrap is.
   SearchOptions search;
   /// Once a stop is requested, the fit ends soon with kTryAgain and its results are discarded. Default: never.
   std::stop_token stop;

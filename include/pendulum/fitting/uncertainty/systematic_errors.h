@@ -77,18 +77,24 @@ struct IntervalEnds95 {
   std::optional<double> lower, upper;
 };
 
-/// The total 95 % interval of a ParameterEstimate or DerivedQuantity, in its unit. That of a parameter ends at its
-/// bounds: friction is never negative.
+/// The total 95 % interval of a ParameterEstimate or DerivedQuantity, in its unit. It ends at the quantity's bounds:
+/// friction is never negative.
 template <typename Estimated>
 IntervalEnds95 TotalInterval95(const Estimated& quantity) {
   const auto end = [&](IntervalEnd which, const std::optional<double>& end95) {
     return TotalIntervalEnd(which, quantity.estimate, end95, quantity.systematic);
   };
-  IntervalEnds95 ends = {end(IntervalEnd::kLower, quantity.lower95), end(IntervalEnd::kUpper, quantity.upper95)};
-  if constexpr (requires { quantity.info; }) {
-    if (ends.lower) ends.lower = std::max(*ends.lower, std::min(quantity.info.lower, quantity.estimate));
-    if (ends.upper) ends.upper = std::min(*ends.upper, std::max(quantity.info.upper, quantity.estimate));
+  const auto& possible = [&]() -> const auto& {
+    if constexpr (requires { quantity.info; }) {
+      return quantity.info;
+    } else {
+      return quantity.range;
+    }
   }
+  ();
+  IntervalEnds95 ends = {end(IntervalEnd::kLower, quantity.lower95), end(IntervalEnd::kUpper, quantity.upper95)};
+  if (ends.lower) ends.lower = std::max(*ends.lower, std::min(possible.lower, quantity.estimate));
+  if (ends.upper) ends.upper = std::min(*ends.upper, std::max(possible.upper, quantity.estimate));
   return ends;
 }
 
