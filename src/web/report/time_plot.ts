@@ -72,6 +72,7 @@ export class TimePlot {
       xRange: () => view.current,
       yRange: () => this.yRange(),
       draw: (painter) => this.draw(painter),
+      legend: () => traces.filter((trace) => trace.shown),
       onSelect: (from, to) => view.set(from, to),
     });
     followPointer(this.chart, view);

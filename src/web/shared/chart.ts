@@ -9,10 +9,17 @@ import { xAxis, yAxis } from './axes';
 import { chartSvg } from './chart_svg';
 import { el } from './dom';
 import { Painter, type Frame } from './painter';
+import type { Mark } from './marks';
 import { saveButtons } from './save';
 import { onThemeChange, printing } from './theme';
 
 export type Range = readonly [number, number];
+
+/** An entry of a legend. */
+export interface Key {
+  name: string;
+  mark: Mark;
+}
 
 export interface ChartOptions {
   /** Name of the files in which the plot is saved; default: "plot". */
@@ -27,6 +34,8 @@ export interface ChartOptions {
   draw: (painter: Painter) => void;
   height: number;
   yLog?: () => boolean;
+  /** What the curves are, for pictures that leave the page. */
+  legend?: () => Key[];
   /** A second axis on the right. */
   right?: { label: string; factor: number } | null;
   /** Reserves the same space left and right in plots that are placed one above the other. */
@@ -41,7 +50,6 @@ const kNarrow = 520; // px; narrower plots have no space for a second axis
 const kLeftRoom = 56; // px, for tick labels of aligned plots
 const kRightRoom = 44;
 const kLabelRoom = 20;
-const kRoomOfLabel = 24; // px
 const kMargin = 28; // px, for half a tick label
 
 export class Chart {
@@ -62,12 +70,8 @@ export class Chart {
 
   /** The plot with the buttons that save it. */
   withButtons(): HTMLElement {
-    const { name = 'plot', height } = this.options;
-    const canvas = (): HTMLCanvasElement | null => this.plot?.ctx.canvas ?? null;
-    const kLeast = 320; // px
-    const svgText = (): string =>
-      chartSvg(this.options, Math.max(kLeast, this.width), Math.max(kLeast / 2, height) + kRoomOfLabel);
-    return el('div', { class: 'chart' }, this.host, saveButtons(name, svgText, canvas));
+    const { name = 'plot' } = this.options;
+    return el('div', { class: 'chart' }, this.host, saveButtons(name, (title) => chartSvg(this.options, title)));
   }
 
   /** The element inside the axes. */

@@ -119,9 +119,9 @@ export function clippedWords(rows: ForestRow[]): string {
 /** The plot with buttons that save it, with the names of its rows. `name`: of the files. */
 export function savedForest(plot: HTMLElement, name: string, sentence: string, rows: ForestRow[]): HTMLElement {
   const labels = rows.map((row, i): [string, number] => [row.label, (i + 0.5) * kRow]);
-  const text = (): string => {
+  const text = (title: string): string => {
     const drawing = plot.querySelector<SVGElement>('.strip > svg');
-    return drawing ? standalone(drawing, sentence, labels) : '';
+    return drawing ? standalone(drawing, title, sentence, labels) : '';
   };
   return el('div', { class: 'chart' }, plot, saveButtons(name, text));
 }

@@ -4,7 +4,7 @@
 import { button, el } from './dom';
 import { svg } from './marks';
 import { kPlotFont } from './painter';
-import { colour } from './theme';
+import { colour, onWhite } from './theme';
 
 /** Lets the browser save the content under this name. */
 export function save(content: Blob, name: string): void {
@@ -16,60 +16,50 @@ export function save(content: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(href), 60_000);
 }
 
+const heading = (): string => document.querySelector('h1')?.textContent?.trim() ?? '';
+
 /** The heading of the page with only characters that a file name may have, and the name of the plot. */
 function fileName(plot: string, ending: string): string {
-  const heading = document.querySelector('h1')?.textContent ?? '';
-  const stem = heading.replace(/\.[A-Za-z0-9]{1,5}$/, '').replace(/[^\p{L}\p{N}]+/gu, '_').slice(0, 60);
+  const stem = heading().replace(/\.[A-Za-z0-9]{1,5}$/, '').replace(/[^\p{L}\p{N}]+/gu, '_').slice(0, 60);
   return `${stem.replace(/^_+|_+$/g, '') || 'pendulum'}_${plot}.${ending}`;
-}
-
-/** Saves the canvas on a background. */
-async function saveCanvas(canvas: HTMLCanvasElement, plot: string): Promise<void> {
-  const copy = el('canvas', { width: String(canvas.width), height: String(canvas.height) });
-  const ctx = copy.getContext('2d');
-  if (!ctx) throw new Error('the browser gives no canvas');
-  ctx.fillStyle = colour('paper');
-  ctx.fillRect(0, 0, copy.width, copy.height);
-  ctx.drawImage(canvas, 0, 0);
-  const content = await new Promise<Blob | null>((resolve) => copy.toBlob(resolve));
-  if (!content) throw new Error('the plot is too large');
-  save(content, fileName(plot, 'png'));
 }
 
 const asSvg = (text: string): Blob => new Blob([text], { type: 'image/svg+xml' });
 
-const kDots = 2; // a px of a PNG that is made from SVG
+const kDots = 2; // a px of a PNG
 
-/** The drawing as a canvas. */
-async function rasterized(svgText: string): Promise<HTMLCanvasElement> {
+/** The drawing as PNG. */
+async function rasterized(svgText: string): Promise<Blob> {
   const image = new Image();
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svgText)}`;
   await image.decode();
   const [width, height] = [kDots * image.naturalWidth, kDots * image.naturalHeight];
   const canvas = el('canvas', { width: String(width), height: String(height) });
   canvas.getContext('2d')?.drawImage(image, 0, 0, width, height);
-  return canvas;
+  const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
+  if (!content) throw new Error('the plot is too large');
+  return content;
 }
 
-/** Small buttons that save a plot. `svgText` draws it; `canvas` has it already, if it was drawn on a canvas. */
-export function saveButtons(plot: string, svgText: () => string, canvas?: () => HTMLCanvasElement | null): HTMLElement {
-  const png = async (): Promise<void> => {
-    const drawn = canvas ? canvas() : await rasterized(svgText());
-    if (drawn) await saveCanvas(drawn, plot);
-  };
+/** Small buttons that save a plot. `svgText` draws it under a title. */
+export function saveButtons(plot: string, svgText: (title: string) => string): HTMLElement {
+  const words = plot.replace(/_/g, ' ');
+  const drawn = (): string => onWhite(() => svgText([heading(), words].filter((part) => part !== '').join(': ')));
   const failure = el('span', { role: 'alert' });
   const savePng = (): void => {
     failure.textContent = '';
-    png().catch((error: unknown) => {
-      failure.textContent = `The PNG picture could not be made (${String(error)}). Save the plot as SVG.`;
-    });
+    rasterized(drawn()).then(
+      (content) => save(content, fileName(plot, 'png')),
+      (error: unknown) => {
+        failure.textContent = `The PNG picture could not be made (${String(error)}). Save the plot as SVG.`;
+      },
+    );
   };
-  const words = plot.replace(/_/g, ' ');
   return el(
     'div',
     { class: 'save' },
     button('PNG', savePng, { 'aria-label': `Save the plot ${words} as PNG`, title: 'Save this plot as a PNG picture' }),
-    button('SVG', () => save(asSvg(svgText()), fileName(plot, 'svg')), {
+    button('SVG', () => save(asSvg(drawn()), fileName(plot, 'svg')), {
       'aria-label': `Save the plot ${words} as SVG`,
       title: 'Save this plot as an SVG drawing',
     }),
@@ -89,23 +79,26 @@ function withColours(picture: SVGElement): SVGElement {
 }
 
 /** A drawing of the page as a file, with labels to the left of it. labels: text and height of the middle, px. */
-export function standalone(picture: SVGElement, sentence: string, labels: [string, number][]): string {
+export function standalone(picture: SVGElement, title: string, sentence: string, labels: [string, number][]): string {
   const kCharacter = 7; // px
+  const kTitle = 26;
   const box = picture.getBoundingClientRect();
   const left = 16 + kCharacter * Math.max(0, ...labels.map(([words]) => words.length));
-  const size = { width: String(Math.ceil(left + box.width + 24)), height: String(Math.ceil(box.height + 8)) };
+  const size = { width: String(Math.ceil(left + box.width + 24)), height: String(Math.ceil(kTitle + box.height + 8)) };
   const style = { xmlns: 'http://www.w3.org/2000/svg', 'font-family': kPlotFont, 'font-size': '12' };
   const file = svg('svg', { ...style, ...size, viewBox: `0 0 ${size.width} ${size.height}` });
-  const title = svg('title', {});
-  title.textContent = sentence;
-  file.append(title, svg('rect', { width: '100%', height: '100%', fill: colour('paper') }));
-  for (const [words, y] of labels) {
-    const text = svg('text', { x: '8', y: String(y + 8), fill: colour('ink') });
+  const description = svg('title', {});
+  description.textContent = sentence;
+  file.append(description, svg('rect', { width: '100%', height: '100%', fill: colour('paper') }));
+  const write = (words: string, y: number): void => {
+    const text = svg('text', { x: '8', y: String(y), fill: colour('ink') });
     text.textContent = words;
     file.append(text);
-  }
+  };
+  write(title, 18);
+  for (const [words, y] of labels) write(words, kTitle + y + 8);
   const inner = withColours(picture.cloneNode(true) as SVGElement);
-  for (const [name, value] of [['x', left], ['y', 4], ['width', box.width]] as const) inner.setAttribute(name, String(value));
+  for (const [name, value] of [['x', left], ['y', kTitle + 4], ['width', box.width]] as const) inner.setAttribute(name, String(value));
   file.append(inner);
   return `${new XMLSerializer().serializeToString(file)}\n`;
 }

@@ -6,7 +6,7 @@ import { SvgContext } from './svg_context';
 const drawn = (draw: (context: SvgContext) => void): string => {
   const context = new SvgContext('plot');
   draw(context);
-  return context.text(40, 30, '#fff', 'Arial', 'a < b').replace(/^.*?fill="#fff"\/>|<\/svg>\n$/g, '');
+  return context.text(40, 30, 20, '#fff', 'Arial', 'a < b').replace(/^.*?fill="#fff"\/>|<\/svg>\n$/g, '');
 };
 
 test('a path has the style of its stroke', () => {

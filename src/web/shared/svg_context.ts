@@ -107,11 +107,11 @@ export class SvgContext implements Context {
     this.parts.push(`<text x="${short(x)}" y="${short(y)}" ${style}>${escaped(words)}</text>`);
   }
 
-  /** The picture as a file: width and height in px, on a background, with a description. */
-  text(width: number, height: number, background: string, font: string, sentence: string): string {
+  /** The picture as a file: width, height and font size in px, on a background, with a description. */
+  text(width: number, height: number, size: number, background: string, font: string, sentence: string): string {
     return (
       `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" ` +
-      `font-family="${escaped(font)}" font-size="13"><title>${escaped(sentence)}</title>` +
+      `font-family="${escaped(font)}" font-size="${size}"><title>${escaped(sentence)}</title>` +
       `<rect width="${width}" height="${height}" fill="${background}"/>${this.parts.join('')}</svg>\n`
     );
   }

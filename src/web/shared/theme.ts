@@ -70,6 +70,18 @@ export function themeButton(): HTMLButtonElement {
   return element;
 }
 
+/** Calls `draw` with the colours of the light theme, for pictures that leave the page. */
+export function onWhite<T>(draw: () => T): T {
+  const { dataset } = document.documentElement;
+  const { theme } = dataset;
+  dataset.theme = 'light';
+  try {
+    return draw();
+  } finally {
+    dataset.theme = theme;
+  }
+}
+
 /** A colour of style.css: colour("ink") is the value of --ink. */
 export function colour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() || '#888';

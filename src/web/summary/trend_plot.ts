@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Plot of the estimates and their errors over the column of the trend, with zoom. */
 
-import { Chart, padded, type Range } from '../shared/chart';
+import { Chart, padded, type Key, type Range } from '../shared/chart';
 import { choice, el, toggle } from '../shared/dom';
-import { recordingMark, swatch } from '../shared/marks';
+import { recordingMark, swatch, type Mark } from '../shared/marks';
 import { elided, visible } from '../shared/names';
 import { followPointer, keyboardBox, navigationButtons, type NavigationWords } from '../shared/navigation';
 import type { Painter } from '../shared/painter';
@@ -53,6 +53,7 @@ export class TrendPlot {
       xRange: () => this.view.current,
       yRange: () => this.yRange(),
       draw: (painter) => this.draw(painter),
+      legend: () => this.keys(),
       onSelect: (low, high) => this.view.set(low, high),
       onCursor: (x) => this.read(x),
       height: 330,
@@ -70,6 +71,10 @@ export class TrendPlot {
     const unit = unitText(this.one.unit);
     const what = wordsOf(this.one.name) + (this.aboutMean ? ' − its group’s median' : '');
     return what + (unit && ` [${unit}]`);
+  }
+
+  private keys(): Key[] {
+    return this.shown().flatMap((group) => (group.name === null ? [] : [{ name: group.name, mark: this.pointsOf(group) }]));
   }
 
   private shown(): TrendGroup[] {
@@ -153,7 +158,11 @@ export class TrendPlot {
       );
   }
 
-  private markOf(group: TrendGroup): ReturnType<typeof recordingMark> {
+  private pointsOf(group: TrendGroup): Mark {
+    return { ...this.markOf(group), points: true };
+  }
+
+  private markOf(group: TrendGroup): Mark {
     return recordingMark(this.groups.indexOf(group));
   }
 
@@ -185,7 +194,7 @@ export class TrendPlot {
         this.chart.update();
       };
       const name = group.name === null ? 'no group' : elided(group.name, kLabel);
-      box.append(toggle([swatch({ ...this.markOf(group), points: true }), name], true, change));
+      box.append(toggle([swatch(this.pointsOf(group)), name], true, change));
     }
     return box;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Decay of the amplitudes: turning points, the exponential of the log decrement, and the fitted motion. */
 
-import { Chart, padded, type Range } from '../../shared/chart';
+import { Chart, padded, type Key, type Range } from '../../shared/chart';
 import { choice, el } from '../../shared/dom';
 import { kLinear, kMeasured, modelMark, swatch, type Mark } from '../../shared/marks';
 import type { Painter } from '../../shared/painter';
@@ -51,11 +51,11 @@ function curvesOf({ report, data, samples }: OneRecording, fit: RecordedFit | nu
   return curves;
 }
 
+const keysOf = (curves: Curve[]): Key[] => [{ name: 'turning points', mark: kMeasured }, ...curves];
+
 function legend(curves: Curve[]): HTMLElement {
   const box = el('ul', { class: 'legend', 'aria-label': 'Curves' });
-  for (const { name, mark } of [{ name: 'turning points', mark: kMeasured }, ...curves]) {
-    box.append(el('li', {}, swatch(mark), name));
-  }
+  for (const { name, mark } of keysOf(curves)) box.append(el('li', {}, swatch(mark), name));
   return box;
 }
 
@@ -81,6 +81,7 @@ class EnvelopePlot {
       yRange: () => this.yRange(),
       yLog: () => this.log,
       draw: (painter) => this.draw(painter),
+      legend: () => keysOf(curves),
       height: 300,
     });
   }
