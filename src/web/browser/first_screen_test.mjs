@@ -133,9 +133,9 @@ test('plots are saved as PNG and SVG', async (t) => {
   assert.equal(await page.locator('.save button').count(), 2 * plots);
   for (const [plot, pattern] of [
     ['swing', />recorded.csv: swing<.*>measured<.*>coulomb<.*time \[s\].*angle \[°\].*<path d="M[^"]*L[^"]*" fill="none" stroke="#0072b2".*a1 1 0 1 0/],
-    ['residuals', /residual \[rad\].*<rect [^>]*fill="#e6eef5"/],
+    ['residuals', /residual \[°\].*<rect [^>]*fill="#e6eef5"/],
     ['autocorrelation', /lag \[samples\]/],
-    ['phase portrait', /rate \[rad\/s\]/],
+    ['phase portrait', /rate \[°\/s\]/],
   ]) {
     const { name, content } = await saved(page, plot, 'SVG');
     assert.equal(name, `recorded_${plot.replace(' ', '_')}.svg`);

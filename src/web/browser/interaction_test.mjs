@@ -75,22 +75,22 @@ test('another model can be shown in detail, or drawn over the first model', asyn
   assert.match(await page.locator('[data-parameter=viscous]').textContent(), /at its bound/);
 });
 
-test('residuals in counts, σ and degrees', async (t) => {
+test('residuals in counts, σ and radians', async (t) => {
   const page = await open(t, makeReport());
   const size = async () =>
     Number(
       /, ([\d.]+) \S+ root mean square/.exec(await page.locator('#fit .plot >> nth=1').getAttribute('aria-label'))[1],
     );
-  const radians = await size();
+  const degrees = await size();
   const { result } = makeReport();
   const [recording] = result.recordings;
   for (const [name, unit] of [
-    ['counts', recording.resolution_rad],
-    ['σ', recording.fits[1].noise.sigma_rad],
-    ['°', Math.PI / 180],
+    ['counts', (180 / Math.PI) * recording.resolution_rad],
+    ['σ', (180 / Math.PI) * recording.fits[1].noise.sigma_rad],
+    ['rad', 180 / Math.PI],
   ]) {
     await page.locator('#fit .choice label', { hasText: name }).click();
-    assert.ok(Math.abs((await size()) / (radians / unit) - 1) < 0.01, name);
+    assert.ok(Math.abs((await size()) / (degrees / unit) - 1) < 0.01, name);
   }
 });
 

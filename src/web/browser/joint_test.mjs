@@ -89,7 +89,7 @@ test('overlaid recordings are shown and hidden one by one, and zoomed together',
     const { measured, models } = content.series[k];
     const squares = measured.map((value, i) => (value - models.coulomb.fitted[i]) ** 2);
     const rms = Math.sqrt(squares.reduce((sum, x) => sum + x, 0) / squares.length);
-    return `recording ${k + 1} ${Number(rms.toPrecision(3))} rad`;
+    return `recording ${k + 1} ${Number(((180 / Math.PI) * rms).toPrecision(3))} °`;
   });
   assert.equal((await label(below)).split('; ')[1], `root mean squares: ${sizes.join(', ')}.`);
   for (const name of ['recording 1', 'recording 3'])

@@ -27,6 +27,15 @@ export function inDegrees(unit: string): { unit: string; factor: number } | null
   return null;
 }
 
+/** The unit in which plots show readings: degrees for angles, otherwise their own. Values are multiplied by `factor`. */
+export const shownUnit = (unit: string): { unit: string; factor: number } => inDegrees(unit) ?? { unit: unitText(unit), factor: 1 };
+
+/** The values in that unit. */
+export function inShownUnit<T extends Float64Array | number[]>(values: T, unit: string): T {
+  const { factor } = shownUnit(unit);
+  return (factor === 1 ? values : values.map((value) => factor * value)) as T;
+}
+
 /** The number under the key `name` + "_" + unit, such as rms_residual_rad; undefined if there is none. */
 export function withUnit(object: Loose | null | undefined, name: string): number | undefined {
   const isOf = (key: string): boolean => key.startsWith(`${name}_`) && key !== `${name}_std_error`;

@@ -10,7 +10,7 @@ import { extent, lowerBound, medianInterval, rootMeanSquare } from '../../shared
 import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
 import { TimeView } from '../../shared/time_view';
-import { inDegrees, quantityOf, unitText } from '../../shared/units';
+import { inDegrees, quantityOf, shownUnit, unitText } from '../../shared/units';
 import { swingHeight } from '../swing';
 import { TimePlot, type Trace } from '../time_plot';
 import { originWords, overlay, type Overlaid, type Overlayable, type OverlaidKind } from './overlay';
@@ -42,10 +42,10 @@ function viewOf(curves: Overlaid[], report: Overlayable): TimeView {
   return view;
 }
 
-/** A second axis in degrees for an angle or a rate. */
+/** A second axis in radians for an angle or a rate. */
 function rightAxis(unit: string): { label: string; factor: number } | null {
   const degrees = inDegrees(unit);
-  return degrees && { label: `[${degrees.unit}]`, factor: degrees.factor };
+  return degrees && { label: `[${unitText(unit)}]`, factor: 1 / degrees.factor };
 }
 
 class OverlayPlots {
@@ -89,7 +89,8 @@ class OverlayPlots {
       sentence: () =>
         `${capital(this.names())}, ${kinds() || 'nothing of them'}: ${quantityOf(this.unit)} over time ${this.range()}.`,
       xLabel,
-      yLabel: () => `${quantityOf(this.unit)} [${unitText(this.unit)}]`,
+      yLabel: () => `${quantityOf(this.unit)} [${shownUnit(this.unit).unit}]`,
+      factor: () => shownUnit(this.unit).factor,
       right,
       aligned: right ? 'with right axis' : 'without',
       height: 330,
@@ -97,10 +98,11 @@ class OverlayPlots {
   }
 
   private residualPlot(residuals: Trace[], xLabel: string): TimePlot {
+    const { unit, factor } = shownUnit(this.unit);
     const size = (): string =>
       residuals
         .filter((trace) => trace.shown)
-        .map((trace) => `${trace.name} ${significant(rootMeanSquare(trace.values), 3)} ${unitText(this.unit)}`)
+        .map((trace) => `${trace.name} ${significant(factor * rootMeanSquare(trace.values), 3)} ${unit}`)
         .join(', ');
     return new TimePlot(residuals, this.view, {
       name: 'residuals_of_recordings',
@@ -108,7 +110,8 @@ class OverlayPlots {
       sentence: () =>
         `Residuals (measured minus fitted) of ${this.names()} over time ${this.range()}; root mean squares: ${size() || 'none'}.`,
       xLabel,
-      yLabel: () => `residual [${unitText(this.unit)}]`,
+      yLabel: () => `residual [${unit}]`,
+      factor: () => factor,
       aligned: inDegrees(this.unit) ? 'with right axis' : 'without',
       height: 190,
       symmetric: true,
@@ -158,6 +161,7 @@ class OverlayPlots {
   private samples(): HTMLElement {
     const shown = this.curves.filter(({ k }) => !this.hidden.has(k));
     const each = Math.max(4, Math.floor(kRows / Math.max(1, shown.length)));
+    const { unit, factor } = shownUnit(this.unit);
     const [from, to] = this.view.current;
     const rows = shown.flatMap(({ k, measured, residual }) => {
       const [first, end] = [lowerBound(measured.time, from), lowerBound(measured.time, to + 1e-12)];
@@ -166,13 +170,12 @@ class OverlayPlots {
       return Array.from({ length: count }, (_unused, j) => first + j * stride).map((i) => [
         String(k + 1),
         fixed(measured.time[i], 3),
-        significant(measured.values[i], 4),
-        significant(residual && measured.values[i] - residual.values[i], 4),
-        significant(residual?.values[i], 3),
+        significant(factor * measured.values[i], 4),
+        significant(residual && factor * (measured.values[i] - residual.values[i]), 4),
+        significant(residual && factor * residual.values[i], 3),
       ]);
     });
     const number = 'number' as const;
-    const unit = unitText(this.unit);
     const heads = ['t [s]', `measured [${unit}]`, `fitted [${unit}]`, `residual [${unit}]`];
     const columns = [{ head: capital(this.kind) }, ...heads.map((head) => ({ head, kind: number }))];
     return table(`Some samples of each ${this.kind} shown`, columns, rows);
@@ -211,7 +214,8 @@ export function jointSwing(report: Overlayable): HTMLElement | null {
     name: 'swings',
     sentence: () => `The swings of recordings ${numbers} with the joint fit: ${quantityOf(unit)} over time.`,
     xLabel: originWords(curves.map(({ k }) => report.recordings[k])),
-    yLabel: () => `${quantityOf(unit)} [${unitText(unit)}]`,
+    yLabel: () => `${quantityOf(unit)} [${shownUnit(unit).unit}]`,
+    factor: () => shownUnit(unit).factor,
     right: rightAxis(unit),
     height: swingHeight(),
   });

@@ -8,7 +8,7 @@ import type { Painter } from '../../shared/painter';
 import { significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
-import { quantityOf, unitText } from '../../shared/units';
+import { inShownUnit, quantityOf, shownUnit } from '../../shared/units';
 import { curveTurns, decrementRate, exponentialThrough, measuredTurns, zeroOf, type Turn } from '../envelope';
 import { rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 import { told } from '../told';
@@ -73,10 +73,10 @@ class EnvelopePlot {
       name: 'amplitudes',
       sentence: () =>
         `Amplitudes of ${turns.length} turning points from ${significant(turns[0].amplitude, 3)} to ` +
-        `${significant(turns[turns.length - 1].amplitude, 3)} ${unitText(unit)} on a ${this.log ? 'logarithmic' : 'linear'} axis` +
+        `${significant(turns[turns.length - 1].amplitude, 3)} ${shownUnit(unit).unit} on a ${this.log ? 'logarithmic' : 'linear'} axis` +
         `${curves.length > 0 ? `, with ${curves.map((curve) => curve.name).join(' and ')}` : ''}.`,
       xLabel: 'time [s]',
-      yLabel: () => `amplitude of the ${quantityOf(unit)} [${unitText(unit)}]`,
+      yLabel: () => `amplitude of the ${quantityOf(unit)} [${shownUnit(unit).unit}]`,
       xRange: () => padded(spans, 0.02),
       yRange: () => this.yRange(),
       yLog: () => this.log,
@@ -145,6 +145,9 @@ export function envelopeSection(one: OneRecording): HTMLElement {
     const why = 'No turning points were found. The recording has too few samples in a period, or nothing swings.';
     return section('envelope', title, absent(why), ...words);
   }
-  const plot = new EnvelopePlot(turns, curvesOf(one, fit, turns), series.unit);
+  const { factor } = shownUnit(series.unit);
+  const shown = turns.map((turn) => ({ ...turn, amplitude: factor * turn.amplitude, error: turn.error && factor * turn.error }));
+  const curves = curvesOf(one, fit, turns).map((curve) => ({ ...curve, amplitude: inShownUnit(curve.amplitude, series.unit) }));
+  const plot = new EnvelopePlot(shown, curves, series.unit);
   return section('envelope', title, plot.element(), ...words);
 }

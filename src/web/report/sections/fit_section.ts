@@ -52,7 +52,7 @@ function residualUnits(one: OneRecording, samples: Samples): ResidualUnit[] {
   const units: ResidualUnit[] = [{ value: 'own', label: own, axis: `residual [${own}]`, factor: 1 }];
   const degrees = inDegrees(samples.unit);
   if (degrees)
-    units.push({ value: 'degrees', label: degrees.unit, axis: `residual [${degrees.unit}]`, factor: degrees.factor });
+    units.unshift({ value: 'degrees', label: degrees.unit, axis: `residual [${degrees.unit}]`, factor: degrees.factor });
   const sigma = withUnit(fit?.noise, 'sigma');
   if (sigma) units.push({ value: 'sigma', label: 'σ', axis: 'residual [σ]', factor: 1 / sigma });
   const level = withUnit(one.data, 'resolution');

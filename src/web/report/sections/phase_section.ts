@@ -6,7 +6,7 @@ import { modelMark } from '../../shared/marks';
 import { significant } from '../../shared/rounding';
 import { extent, medianInterval } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
-import { unitText } from '../../shared/units';
+import { inShownUnit, shownUnit } from '../../shared/units';
 import { zeroOf } from '../envelope';
 import { centralDifferences, thinned } from '../phase';
 import { isAliased, rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
@@ -29,7 +29,9 @@ function portrait(one: OneRecording, fit: RecordedFit): { angle: Float64Array; r
 export function phaseSection(one: OneRecording): HTMLElement {
   const { report } = one;
   const fit = shownFitOf(one);
-  const path = fit && one.samples ? portrait(one, fit) : null;
+  const own = (fit?.parameters.release_angle ?? fit?.parameters.initial_angle)?.unit ?? 'rad';
+  const found = fit && one.samples ? portrait(one, fit) : null;
+  const path = found && { angle: inShownUnit(found.angle, own), rate: inShownUnit(found.rate, own) };
   const angles = path && extent([path.angle]);
   const rates = path && extent([path.rate]);
   if (!fit || !path || !angles || !rates) {
@@ -39,8 +41,7 @@ export function phaseSection(one: OneRecording): HTMLElement {
       absent('There is no fitted angle to draw against its rate: the sensor gives no angle, or there is no fit.'),
     );
   }
-  const start = fit.parameters.release_angle ?? fit.parameters.initial_angle;
-  const unit = unitText(start?.unit ?? 'rad');
+  const { unit } = shownUnit(own);
   const most = (range: readonly [number, number]): number => Math.max(-range[0], range[1]);
   const chart = new Chart({
     name: 'phase_portrait',

@@ -6,7 +6,7 @@ import { details, el } from '../../shared/dom';
 import { significant } from '../../shared/rounding';
 import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
-import { unitText } from '../../shared/units';
+import { inShownUnit, shownUnit } from '../../shared/units';
 import { autocorrelation } from '../autocorrelation';
 import { histogram, normalDensity, type Histogram } from '../histogram';
 import { shownFitOf, type OneRecording } from '../report';
@@ -57,20 +57,21 @@ function normalCurve(bars: Histogram): { x: number[]; y: number[] } {
   return { x, y: x.map((value) => normalDensity(value, bars.mean, bars.deviation)) };
 }
 
-function histogramPart(residual: Float64Array, unit: string): HTMLElement {
-  const bars = histogram(residual);
+function histogramPart(residual: Float64Array, ownUnit: string): HTMLElement {
+  const { unit } = shownUnit(ownUnit);
+  const bars = histogram(inShownUnit(residual, ownUnit));
   if (!bars) return absent('The residuals do not vary, so they have no distribution to draw.');
   const left = bars.counts.map((_count, i) => bars.start + i * bars.width);
   const right = left.map((x) => x + bars.width);
   const curve = normalCurve(bars);
   const sentence =
-    `Residuals from ${significant(left[0], 2)} to ${significant(right[right.length - 1], 2)} ${unitText(unit)}, ` +
-    `standard deviation ${significant(bars.deviation, 3)} ${unitText(unit)}, with the normal curve of that width`;
+    `Residuals from ${significant(left[0], 2)} to ${significant(right[right.length - 1], 2)} ${unit}, ` +
+    `standard deviation ${significant(bars.deviation, 3)} ${unit}, with the normal curve of that width`;
   const chart = new Chart({
     name: 'histogram',
     sentence: () => `Histogram. ${sentence}.`,
-    xLabel: `residual [${unitText(unit)}]`,
-    yLabel: () => `density [1/${unitText(unit)}]`,
+    xLabel: `residual [${unit}]`,
+    yLabel: () => `density [1/${unit}]`,
     xRange: () => padded([left[0], right[right.length - 1]], 0.02),
     yRange: () => [0, 1.08 * Math.max(...bars.density, ...curve.y)],
     draw: (painter) => {
@@ -82,7 +83,7 @@ function histogramPart(residual: Float64Array, unit: string): HTMLElement {
   const rows = (): HTMLElement =>
     table(
       'Residuals by size',
-      [{ head: `From [${unitText(unit)}]` }, { head: 'To', kind: 'number' }, { head: 'Samples', kind: 'number' }],
+      [{ head: `From [${unit}]` }, { head: 'To', kind: 'number' }, { head: 'Samples', kind: 'number' }],
       bars.counts.map((count, i) => [significant(left[i], 3), significant(right[i], 3), String(count)]),
     );
   return el('div', {}, figure(`${sentence} (dashed).`, chart.withButtons()), details('Bars as a table', rows));

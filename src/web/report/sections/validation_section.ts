@@ -8,7 +8,7 @@ import { significant } from '../../shared/rounding';
 import { medianInterval, type Samples } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
 import { TimeView } from '../../shared/time_view';
-import { inDegrees, quantityOf, unitText } from '../../shared/units';
+import { inDegrees, quantityOf, shownUnit, unitText } from '../../shared/units';
 import { apparentFrequency, apparentSwing } from '../aliasing';
 import { curveTurns, zeroOf } from '../envelope';
 import { isAliased, rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
@@ -108,8 +108,9 @@ function overlay(one: OneRecording, samples: Samples, fit: RecordedFit, curves: 
     name: 'textbook',
     sentence: () => sentence,
     xLabel: words,
-    yLabel: () => `${quantityOf(samples.unit)} [${unitText(samples.unit)}]`,
-    right: degrees && { label: `[${degrees.unit}]`, factor: degrees.factor },
+    yLabel: () => `${quantityOf(samples.unit)} [${shownUnit(samples.unit).unit}]`,
+    factor: () => shownUnit(samples.unit).factor,
+    right: degrees && { label: `[${unitText(samples.unit)}]`, factor: 1 / degrees.factor },
     height: 300,
     behind: (painter) => painter.vertical(0, 'rule', [3, 3]),
   });

@@ -13,7 +13,7 @@ import type { Painter } from '../../shared/painter';
 import { fixed, timeText, windowText } from '../../shared/rounding';
 import { extent, medianInterval, toArray } from '../../shared/samples';
 import { TimeView } from '../../shared/time_view';
-import { quantityOf, unitText } from '../../shared/units';
+import { inShownUnit, quantityOf, shownUnit } from '../../shared/units';
 import type { WholeRecording } from '../types';
 
 export type Window = [number, number];
@@ -56,12 +56,12 @@ export class WindowPlot {
     private readonly change: (window: Window) => void,
   ) {
     this.time = Float64Array.from(recording.time_s);
-    this.values = toArray(recording.measured, this.time.length) ?? new Float64Array(0);
+    this.values = inShownUnit(toArray(recording.measured, this.time.length) ?? new Float64Array(0), recording.unit);
     this.gap = kGap * medianInterval(this.time);
     const [first, last] = this.ends;
     const margin = 0.01 * (last - first);
     this.view = new TimeView(first - margin, last + margin, kLeastShare * (last - first));
-    const unit = unitText(recording.unit);
+    const { unit } = shownUnit(recording.unit);
     this.chart = new Chart({
       sentence: () => this.sentence(),
       xLabel: 'time [s]',
