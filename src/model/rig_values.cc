@@ -32,7 +32,7 @@ Result<Rig> ParseWithGravity(Json values, const std::string& name, std::vector<W
     const std::string mean = NumberText(kMeanGravity);
     const std::string std_dev = NumberText(NominalStdDev(RigQuantity::kAcceleration, kMeanGravity));
     warnings.push_back({.code = "gravity_assumed",
-                        .finding = "g was taken as " + mean + " +- " + std_dev + " m/s^2, as at sea level",
+                        .finding = "g was taken as " + mean + " ± " + std_dev + " m/s^2, as at sea level",
                         .advice = "give the local value with --g",
                         .flags = {"g"},
                         .assumed = "g " + mean + " (--g)"});

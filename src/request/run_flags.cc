@@ -373,8 +373,8 @@ std::vector<RunFlag> MakeTable() {
        .needs_fit = true},
       {.name = "release",
        .value = &RunFlags::release,
-       .help = "Which free swing of a recording to fit: a number from 1, or all (tools only); default the "
-               "one that determines the period best, by its length and size.",
+       .help = "Which free swing of a recording to fit: a number from 1, on the command line also all; "
+               "default the one that determines the period best, by its length and size.",
        .label = "Which free swing",
        .schema = {{"type", "integer"}, {"minimum", 1}}},
       {.name = "from",

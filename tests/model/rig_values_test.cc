@@ -57,7 +57,7 @@ TEST(RigOfValues, AssumesGravityIfItIsNeeded) {
   ASSERT_EQ(warnings.size(), 1);
   EXPECT_EQ(warnings[0].code, "gravity_assumed");
   EXPECT_EQ(MessageText(warnings[0]),
-            "g was taken as 9.806 +- 0.015 m/s^2, as at sea level; give the local value with --g");
+            "g was taken as 9.806 ± 0.015 m/s^2, as at sea level; give the local value with --g");
 }
 
 TEST(RigOfValues, NeedsNoGravityBesideATorque) {

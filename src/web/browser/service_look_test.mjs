@@ -268,3 +268,32 @@ for (const [colorScheme, width, height] of [
     await look(page).locator('.calibration-form').waitFor();
     await assertAccessible(page);
   });
+
+for (const [width, height] of [
+  [1280, 800],
+  [390, 600],
+]) {
+  test(`no element with the focus is under the Fit bar, ${width} x ${height}`, async (t) => {
+    const page = await openView(t, service, '/', { context: { viewport: { width, height } } });
+    await drop(page, [{ name: 'logger.csv', content: renamed('t,reading') }]);
+    await shownLook(page, 'logger.csv');
+    const hidden = [];
+    let stops = 0;
+    for (; stops < 120; ++stops) {
+      await page.keyboard.press('Tab');
+      const covered = await page.evaluate(() => {
+        const focused = document.activeElement;
+        if (focused === document.body) return null;
+        const bar = document.querySelector('.fit-bar');
+        if (bar.contains(focused)) return '';
+        const { top, bottom, height } = focused.getBoundingClientRect();
+        const seen = Math.min(bottom, bar.getBoundingClientRect().top) - Math.max(top, 0);
+        return seen >= Math.min(height, 24) ? '' : `${focused.tagName} ${focused.textContent.slice(0, 40)}`;
+      });
+      if (covered === null) break;
+      if (covered !== '') hidden.push(covered);
+    }
+    assert.ok(stops > 10, String(stops));
+    assert.deepEqual(hidden, []);
+  });
+}

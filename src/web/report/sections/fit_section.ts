@@ -11,7 +11,7 @@ import { extent, lowerBound, rootMeanSquare, type Samples } from '../../shared/s
 import { absent, figure, section } from '../../shared/section';
 import { table } from '../../shared/table';
 import type { TimeView } from '../../shared/time_view';
-import { inDegrees, quantityOf, unitText, withUnit } from '../../shared/units';
+import { inDegrees, quantityOf, shownUnit, unitText, withUnit } from '../../shared/units';
 import { rankOf, sharedView, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 import { TimePlot, type Trace } from '../time_plot';
 
@@ -68,15 +68,16 @@ function legend(traces: Trace[], change: (trace: Trace, on: boolean) => void): H
   return box;
 }
 
-/** "t = 3.42 s: measured 0.123 rad, coulomb 0.120 rad" */
+/** "t = 3.42 s: measured 7.05, coulomb 6.88 °" */
 function readout(samples: Samples, traces: Trace[], time: number | null): string {
   if (time === null) return '\u00a0';
   const i = Math.min(samples.time.length - 1, lowerBound(samples.time, time));
   const near = i > 0 && time - samples.time[i - 1] < samples.time[i] - time ? i - 1 : i;
+  const { unit, factor } = shownUnit(samples.unit);
   const values = traces
     .filter((trace) => trace.shown && trace.time === samples.time)
-    .map((trace) => `${trace.name} ${significant(trace.values[near], 4)}`);
-  return `t = ${fixed(samples.time[near], 3)} s: ${values.join(', ')} ${unitText(samples.unit)}`;
+    .map((trace) => `${trace.name} ${significant(factor * trace.values[near], 4)}`);
+  return `t = ${fixed(samples.time[near], 3)} s: ${values.join(', ')} ${unit}`;
 }
 
 /** Table of about 50 samples in the visible range. */
@@ -85,13 +86,14 @@ function sampleTable(samples: Samples, traces: Trace[], view: TimeView): HTMLEle
   const [first, end] = [lowerBound(samples.time, from), lowerBound(samples.time, to + 1e-12)];
   const stride = Math.max(1, Math.ceil((end - first) / 50));
   const shown = traces.filter((trace) => trace.time === samples.time);
+  const { unit, factor } = shownUnit(samples.unit);
   const rows: string[][] = [];
   for (let i = first; i < end; i += stride) {
-    rows.push([fixed(samples.time[i], 3), ...shown.map((trace) => significant(trace.values[i], 4))]);
+    rows.push([fixed(samples.time[i], 3), ...shown.map((trace) => significant(factor * trace.values[i], 4))]);
   }
   const columns = [
     { head: 't [s]' },
-    ...shown.map((trace) => ({ head: `${trace.name} [${unitText(samples.unit)}]`, kind: 'number' as const })),
+    ...shown.map((trace) => ({ head: `${trace.name} [${unit}]`, kind: 'number' as const })),
   ];
   return table(`Every ${stride === 1 ? '' : `${stride}th `}sample of the range shown`, columns, rows);
 }

@@ -30,6 +30,7 @@ export class FieldError extends Error {
 /** The user cancelled the action. */
 export class Cancelled extends Error {}
 
+// The sentences on a recording or an option say themselves what to do.
 const kAdvice: Record<string, string> = {
   bad_request: 'Change what the sentence names, then try again.',
   unauthorized: 'Give the token that the service was started with.',
@@ -39,8 +40,6 @@ const kAdvice: Record<string, string> = {
   conflict: 'It is still under way: try again in a moment.',
   too_large: 'Send a shorter recording, or the part of it that matters.',
   unsupported_media_type: 'Choose a text file with columns of numbers, such as the CSV of a logger or a spreadsheet.',
-  unusable_data: 'Correct the file at that place, or give columns, units and calibration under “Further options”.',
-  no_swing: 'Choose a window that holds a free swing, --from and --to, or another recording.',
   idempotency_key_reused: 'Try again: this counts as a new request.',
   too_many_samples: 'Choose a shorter window, --from and --to, and fit again.',
   too_many_requests: 'Wait a moment, then try again.',

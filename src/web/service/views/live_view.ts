@@ -135,7 +135,7 @@ export const liveView: View = async (place) => {
       'p',
       {},
       'To see a recording while it is made, start the service with ',
-      el('code', {}, 'serve_pendulum --live run.csv'),
+      el('code', {}, 'serve_pendulum --store fits.sqlite --live run.csv'),
       ' and the recorder with ',
       el('code', {}, 'record_pendulum --out run.csv'),
       '.',
