@@ -451,7 +451,7 @@ Result<Identification> Identify(const IdentifyOptions& asked, std::vector<Swing>
   if (is_joint) options.fit.may_be_spring = false;  // all recordings have the same models
   FitOptions fit_options = options.fit;
   fit_options.rig = rig;
-  fit_options.with_losses = options.checks != Checks::kNone;
+  fit_options.with_losses = options.checks != Checks::kNone && swings.size() == 1;
   ASSIGN_OR_RETURN(auto each, FitEachAlone(options, fit_options, swings));
   FittedRecordings fitted{options.models, std::move(each)};
   Identification identification;

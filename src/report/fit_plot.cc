@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -67,33 +68,63 @@ std::string Points(const std::string& name, const TimeAt& time, const Eigen::Vec
 constexpr std::string_view kLayout = R"(
 set encoding utf8
 set minussign
-set lmargin at screen 0.16
-set rmargin at screen 0.975
-set grid lc rgb '#dddddd'
+set termoption noenhanced
+set lmargin at screen 0.17
+set rmargin at screen 0.95
+set grid lt 1 lc rgb '#dddddd'
 set key at graph 1, 1.01 right bottom horizontal samplen 1.5
 set tics nomirror
 )";
 
 constexpr std::string_view kDots = " with points pt 7 ps 0.3 lc rgb '#777777' notitle";
 
-/// The dots of the readings, and the curve of the fit: its samples if they are dense, otherwise the motion itself.
-std::string UpperData(const IdentifiedRecording& recording, const FitReport& fit, const std::optional<Rig>& rig,
-                      double factor) {
+/// The curve of the fit: its samples if they are dense, otherwise the motion itself. origin: the time that is 0, s.
+std::string Curve(const IdentifiedRecording& recording, const FitReport& fit, const std::optional<Rig>& rig,
+                  double origin, double factor) {
   constexpr double kMostSteps = 2e4;
   const Recording& used = recording.used;
-  const auto at_sample = [&](Index i) { return used.time[i]; };
-  std::string data = Points("$measured", at_sample, used.value, factor);
   const std::optional<ShownMotion> motion =
       HidesMotion(recording) ? MotionToShow(used, fit, rig, kMostSteps) : std::nullopt;
-  if (!motion || motion->reading.size() == 0) return data + Points("$fitted", at_sample, fit.fitted, factor);
-  const auto at_step = [&](Index i) { return motion->start + static_cast<double>(i) * motion->interval; };
-  return data + Points("$fitted", at_step, motion->reading, factor);
+  if (!motion || motion->reading.size() == 0) {
+    return Points(
+        "$fitted", [&](Index i) { return used.time[i] - origin; }, fit.fitted, factor);
+  }
+  const auto at_step = [&](Index i) { return motion->start + static_cast<double>(i) * motion->interval - origin; };
+  return Points("$fitted", at_step, motion->reading, factor);
 }
 
-std::string RangeOf(const Recording& used) {
-  constexpr int kDigits = 12;
-  return "set xrange [" + NumberText(used.time[0], kDigits) + ":" + NumberText(used.time[used.size() - 1], kDigits) +
-         "]\n";
+/// The title: the name of the file without its folders, or which of several recordings it is. A long one is shortened
+/// in its middle.
+std::string Title(const Identification& identification, std::size_t k) {
+  constexpr std::size_t kLongest = 48, kEnd = 20;
+  if (identification.is_joint()) return Printable(RecordingLabel(identification, k));
+  std::string title = TitleOf(identification, "Recording");
+  title.erase(0, title.find_last_of('/') + 1);  // npos + 1 is 0
+  if (title.size() <= kLongest) return title;
+  const auto is_inside = [&](std::size_t at) { return (static_cast<unsigned char>(title[at]) & 0xC0U) == 0x80U; };
+  std::size_t cut = kLongest - kEnd, resume = title.size() - kEnd;  // at the begins of characters of UTF-8
+  while (is_inside(cut)) --cut;
+  while (is_inside(resume)) ++resume;
+  return title.substr(0, cut) + "…" + title.substr(resume);
+}
+
+/// The time of the file that is 0 on the axis: its first sample's, if the numbers would be too long to be read.
+double OriginOf(const Recording& used) {
+  constexpr double kLong = 1e4;
+  const double from = used.time[0], duration = used.time[used.size() - 1] - from;
+  return std::abs(from) > std::max(kLong, duration) ? from : 0;
+}
+
+/// The range and four or five marks of an axis for values up to ± `largest`.
+std::string SymmetricAxis(double largest) {
+  constexpr int kDigits = 6;
+  constexpr double kMargin = 1.08;
+  if (!(largest > 0) || !std::isfinite(largest)) return "";
+  const double power = std::pow(10, std::floor(std::log10(largest / 2)));
+  const double ratio = largest / 2 / power;
+  const double step = (ratio >= 5 ? 5 : ratio >= 2 ? 2 : 1) * power;
+  const std::string end = NumberText(kMargin * largest, kDigits);
+  return "set yrange [-" + end + ":" + end + "]\nset ytics " + NumberText(step, kDigits) + "\n";
 }
 
 }  // namespace
@@ -106,40 +137,43 @@ std::optional<PictureFormat> PictureFormatOf(std::string_view path) {
 }
 
 std::string FitPlot(const Identification& identification, std::size_t k, std::size_t fit, PictureFormat format) {
-  constexpr int kDigits = 3;
+  constexpr int kDigits = 3, kTimeDigits = 12;
   const IdentifiedRecording& recording = identification.recordings[k];
   const Recording& used = recording.used;
   const FitReport& report = identification.FitOf(k, fit);
   const bool has_curve = report.fitted.size() == used.size();
-  const Conversion shown = Degrees(used.value_unit()).value_or(Conversion{used.value_unit()});
-  const std::string unit = " [" + std::string(shown.unit) + "]'";
-  const std::string title =
-      identification.is_joint() ? Printable(RecordingLabel(identification, k)) : TitleOf(identification, "Recording");
+  const std::string own = used.value_unit();
+  const Conversion shown = Degrees(own).value_or(Conversion{own});
+  const std::string unit = " [" + std::string(shown.unit) + "]";
   const std::string reading = used.quantity == Quantity::kAngle  ? "angle"
                               : used.quantity == Quantity::kRate ? "rate"
                                                                  : "reading";
-  std::string script = has_curve ? UpperData(recording, report, identification.si_rig(), shown.factor)
-                                 : Points(
-                                       "$measured", [&](Index i) { return used.time[i]; }, used.value, shown.factor);
+  const double origin = OriginOf(used);
+  const auto at_sample = [&](Index i) { return used.time[i] - origin; };
+  const std::string times =
+      "set xlabel " + InQuotes("time [s]" + (origin == 0 ? "" : " after " + NumberText(origin, kTimeDigits) + " s")) +
+      "\n";
+  std::string script = Points("$measured", at_sample, used.value, shown.factor);
+  if (has_curve) script += Curve(recording, report, identification.si_rig(), origin, shown.factor);
   script += "set terminal ";
   script += Terminal(format);
   script += kLayout;
-  script += RangeOf(used) + "set multiplot title " + InQuotes(title) + " noenhanced\n";
-  script += "set tmargin at screen 0.86\nset bmargin at screen ";
-  script += has_curve ? "0.46\nset format x ''\n" : "0.14\nset xlabel 'time [s]'\n";
-  script += "set ylabel '" + reading + unit + "\nplot $measured" + std::string(kDots) +
+  script += "set xrange [" + NumberText(at_sample(0), kTimeDigits) + ":" +
+            NumberText(at_sample(used.size() - 1), kTimeDigits) + "]\nset multiplot title " +
+            InQuotes(Title(identification, k)) + " noenhanced\nset tmargin at screen 0.86\nset bmargin at screen ";
+  script += has_curve ? "0.46\nset format x ''\n" : "0.14\n" + times;
+  script += "set ylabel " + InQuotes(reading + unit) + "\nplot $measured" + std::string(kDots) +
             ", keyentry with points pt 7 ps 0.7 lc rgb '#777777' title 'measured'";
   if (!has_curve) return script + "\nunset multiplot\n";
   script += ", $fitted with lines lw 1.5 lc rgb '#c0392b' title 'fit: " + std::string(report.model.name) + "'\n";
-  const double noise = shown.factor * report.statistics.rms_residual;
-  script += Points(
-                "$residual", [&](Index i) { return used.time[i]; }, report.residual, shown.factor) +
-            "set tmargin at screen 0.38\nset bmargin at screen 0.14\nset format x '%g'\nset xlabel 'time [s]'\n" +
-            "set ylabel 'residual" + unit + "\nplot $residual" + std::string(kDots) + ", " +
-            NumberText(noise, kDigits) + " with lines dt 2 lc rgb '#c0392b' title '± " + NumberText(noise, kDigits) +
-            " " + std::string(shown.unit) + " (rms)', -" + NumberText(noise, kDigits) +
-            " with lines dt 2 lc rgb '#c0392b' notitle\nunset multiplot\n";
-  return script;
+  const std::string noise = NumberText(shown.factor * report.statistics.rms_residual, kDigits);
+  const std::string dashed = " with lines dt 2 lc rgb '#c0392b' ";
+  return script + Points("$residual", at_sample, report.residual, shown.factor) +
+         "set tmargin at screen 0.38\nset bmargin at screen 0.14\nset format x '%g'\n" + times +
+         SymmetricAxis(shown.factor * report.residual.cwiseAbs().maxCoeff()) + "set ylabel " +
+         InQuotes("residual" + unit) + "\nplot $residual" + std::string(kDots) + ", " + noise + dashed + "title " +
+         InQuotes("± " + noise + " " + std::string(shown.unit) + " (rms)") + ", -" + noise + dashed +
+         "notitle\nunset multiplot\n";
 }
 
 }  // namespace pendulum

@@ -144,14 +144,36 @@ std::vector<SummaryQuantity> DerivedOf(const FitReport& fit) {
 
 // ---- Losses ---------------------------------------------------------------------------------------------------------
 
+/// The total standard error of a share of the losses; std::nullopt if it has none or is rounding.
+std::optional<double> ShareError(const DerivedQuantity& share) {
+  constexpr double kRounding = 1e-5;
+  const auto total = TotalStdError(share.std_error, share.systematic);
+  return total && *total > kRounding ? total : std::nullopt;
+}
+
 /// "62 ± 3 %".
 std::string ShareText(const DerivedQuantity& share) {
-  const double percent = 100 * share.estimate;
-  const auto total = TotalStdError(share.std_error, share.systematic);
   const std::string blank(kNoBreak);
-  if (!total || !(*total > 0)) return FixedText(percent, 1) + blank + "%";
-  const ValueAndError text = PdgText(percent, 100 * *total);
+  const ValueAndError text = PdgText(100 * share.estimate, 100 * *ShareError(share));
   return text.value + blank + "±" + blank + text.error + blank + "%";
+}
+
+/// The shares of one part of the motion; empty if one of them has no error, as beside a torque at its bound.
+std::vector<DerivedQuantity> SharesOf(const FitReport& fit, const std::string& of_what) {
+  std::vector<DerivedQuantity> shares;
+  for (const std::string& name : LossNames(fit.model)) {
+    const auto share = std::ranges::find(fit.derived, name + "_loss_share" + of_what, &DerivedQuantity::name);
+    if (share == fit.derived.end() || !ShareError(*share)) return {};
+    shares.push_back(*share);
+  }
+  return shares;
+}
+
+/// Whether shares say something: an error of a quarter leaves open which loss is larger.
+bool AreDetermined(const std::vector<DerivedQuantity>& shares) {
+  constexpr double kLargest = 0.25;
+  return !shares.empty() &&
+         std::ranges::all_of(shares, [](const DerivedQuantity& share) { return *ShareError(share) < kLargest; });
 }
 
 /// "viscous friction", "dry friction".
@@ -162,16 +184,17 @@ std::string LossWords(const FitReport& fit, std::string_view name) {
 
 /// "Viscous friction took 62 ± 3 % of the energy lost, dry friction 38 ± 3 % (first half swing: 71 ± 2 %, 29 ± 2 %)."
 std::string LossesText(const FitReport& fit) {
-  std::string whole, first;
-  for (const std::string& name : LossNames(fit.model)) {
-    const auto of_whole = std::ranges::find(fit.derived, name + "_loss", &DerivedQuantity::name);
-    if (of_whole == fit.derived.end()) return "";
-    const std::string words = LossWords(fit, name), share = std::string(kNoBreak) + ShareText(*of_whole);
-    AddListed(whole.empty() ? Capitalized(words) + " took" + share + " of the energy lost" : words + share, whole);
-    const auto of_first = std::ranges::find(fit.derived, name + "_loss_first_half_swing", &DerivedQuantity::name);
-    if (of_first != fit.derived.end()) AddListed(ShareText(*of_first), first);
+  const std::vector<std::string> names = LossNames(fit.model);
+  const std::vector<DerivedQuantity> whole = SharesOf(fit, ""), first = SharesOf(fit, "_first_half_swing");
+  if (whole.empty()) return "";
+  if (!AreDetermined(whole)) return "The readings do not tell which friction took how much of the energy.";
+  std::string text, of_first;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    const std::string words = LossWords(fit, names[k]), share = std::string(kNoBreak) + ShareText(whole[k]);
+    AddListed(k == 0 ? Capitalized(words) + " took" + share + " of the energy lost" : words + share, text);
+    if (AreDetermined(first)) AddListed(ShareText(first[k]), of_first);
   }
-  return whole + (first.empty() ? "" : " (first half swing: " + first + ")") + ".";
+  return text + (of_first.empty() ? "" : " (first half swing: " + of_first + ")") + ".";
 }
 
 // ---- Remarks on parameters ------------------------------------------------------------------------------------------

@@ -24,21 +24,24 @@ enum class Folding {
   kAsides,            // Warnings have no parentheses.
   kWarnings,          // All warnings are in one paragraph.
   kRemarks,           // Remarks, derived quantities and the textbook's formulas are in one paragraph.
+  kHalfSwing,         // No losses of the first half swing.
   kNames,             // Warnings that are not serious are only named.
   kEquation,          // No equation: the table has its numbers.
   kParagraphs,        // Window and verdict are in one paragraph, assumptions and warnings too.
   kAdvice,            // Nothing on the largest error.
   kReasons,           // The textbook's values have no reasons.
   kTextbook,          // No textbook's values.
-  kHalfSwing,         // No losses of the first half swing.
   kTogether,          // Remarks and assumptions are in one paragraph, without what no swing can tell.
   kLosses             // No losses.
 };
 
-constexpr std::array kFoldings = {
-    Folding::kNone,     Folding::kSensorParameters, Folding::kAsides,     Folding::kWarnings, Folding::kRemarks,
-    Folding::kNames,    Folding::kEquation,         Folding::kParagraphs, Folding::kAdvice,   Folding::kReasons,
-    Folding::kTextbook, Folding::kHalfSwing,        Folding::kTogether,   Folding::kLosses};
+constexpr std::array kFoldings = {Folding::kNone,       Folding::kSensorParameters,
+                                  Folding::kAsides,     Folding::kWarnings,
+                                  Folding::kRemarks,    Folding::kHalfSwing,
+                                  Folding::kNames,      Folding::kEquation,
+                                  Folding::kParagraphs, Folding::kAdvice,
+                                  Folding::kReasons,    Folding::kTextbook,
+                                  Folding::kTogether,   Folding::kLosses};
 
 /// Adds a sentence or a list item to a text.
 void Join(const std::string& more, std::string_view separator, std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include <boost/math/quadrature/gauss.hpp>
@@ -68,6 +69,10 @@ class Accountant {
  public:
   Accountant(const Pendulum<F, T>& pendulum, StartKind start) : pendulum_(pendulum), start_(start) {
     for (const std::size_t i : torques_.growing) alone_.push_back(Alone<F, T>(pendulum.friction, i));
+    const auto at_rest = [&](double direction) {
+      return F::template Torque<T>(T(0.0), direction, pendulum.friction.data());
+    };
+    constant_ = 0.5 * (at_rest(1) + at_rest(-1));
     now_.work.resize(alone_.size());
   }
 
@@ -103,7 +108,7 @@ class Accountant {
   T EnergyAt(const Segment<T>& angle, const Segment<T>& rate, double since) const {
     const T at = At(angle, since), moving = At(rate, since);
     const T potential(pendulum_.gravity.Potential(at.a), pendulum_.gravity.Torque(at.a) * at.v);
-    return 0.5 * (pendulum_.inertia * (moving * moving)) + potential;
+    return 0.5 * (pendulum_.inertia * (moving * moving)) + potential + constant_ * at;
   }
 
   void AddWork(std::size_t k, const Segment<T>& rate, double length) {
@@ -119,8 +124,9 @@ class Accountant {
   }
 
   std::optional<LossShares> Shares(const Account<T>& from, const Account<T>& to) const {
+    constexpr double kRounding = 1e-6;  // of the energy: less may be an error of the trajectory
     const T lost = from.energy - to.energy;
-    if (!(lost.a > 0)) return std::nullopt;
+    if (!(lost.a > kRounding * std::abs(from.energy.a))) return std::nullopt;
     std::vector<T> shares;
     T dry(1.0);
     for (std::size_t k = 0; k < alone_.size(); ++k) {
@@ -142,6 +148,7 @@ class Accountant {
   const StartKind start_;
   const Torques<F> torques_;
   std::vector<FrictionOf<F, T>> alone_;
+  T constant_{};  // torque in either direction, which takes no energy from a whole swing
   Account<T> now_;
   std::vector<Account<T>> marks_;  // at the start, each reversal, and a stop
   double direction_ = 0;

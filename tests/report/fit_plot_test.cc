@@ -52,7 +52,7 @@ TEST(FitPlot, HasTitleLegendAxesAndUnitsAsText) {
   const std::string svg = Svg(Swing(500));
   for (const char* text :
        {"measured", "fit: coulomb", "angle [deg]", "residual [deg]", "time [s]", "± 0.573 deg (rms)"}) {
-    EXPECT_THAT(svg, HasSubstr(std::string(text) + "</tspan>")) << text;
+    EXPECT_THAT(svg, HasSubstr(std::string(text) + "</text>")) << text;
   }
   EXPECT_THAT(svg, HasSubstr("swing.csv</text>"));
   EXPECT_THAT(svg, HasSubstr("fill=\"#ffffff\""));
@@ -70,7 +70,22 @@ TEST(FitPlot, HasTheUnitOfTheReadings) {
   EXPECT_THAT(FitPlot(identification, 0, 0, PictureFormat::kSvg), HasSubstr("'rate [deg/s]'"));
   identification.recordings[0].used.quantity = Quantity::kAngle;
   identification.recordings[0].used.unit = "counts";
-  EXPECT_THAT(FitPlot(identification, 0, 0, PictureFormat::kSvg), HasSubstr("[counts]'"));
+  EXPECT_THAT(FitPlot(identification, 0, 0, PictureFormat::kSvg),
+              AllOf(HasSubstr("[counts]'"), HasSubstr("'± 0.01 counts (rms)'"), HasSubstr("-0.01 with lines")));
+  EXPECT_THAT(Svg(identification), HasSubstr("± 0.01 counts (rms)"));
+}
+
+TEST(FitPlot, CountsLargeTimesFromTheFirstSample) {
+  Identification identification = Swing(500);
+  identification.recordings[0].used.time.array() += 1'700'000'000 - 2;
+  EXPECT_THAT(Svg(identification), HasSubstr("time [s] after 1700000000 s"));
+  EXPECT_THAT(FitPlot(identification, 0, 0, PictureFormat::kSvg), HasSubstr("set xrange [0:20]"));
+}
+
+TEST(FitPlot, ShortensALongNameInItsMiddle) {
+  Identification identification = Swing(50);
+  identification.recordings[0].data.path = "/some/folder/" + std::string(40, 'a') + std::string(60, 'b') + ".csv";
+  EXPECT_THAT(Svg(identification), HasSubstr(">" + std::string(28, 'a') + "…" + std::string(16, 'b') + ".csv<"));
 }
 
 TEST(FitPlot, KeepsASingleOutlierAmongManySamplesAndStaysSmall) {

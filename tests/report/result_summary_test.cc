@@ -133,22 +133,30 @@ DerivedQuantity Share(std::string name, double share, std::optional<double> std_
 TEST(SummarizeFit, SaysWhatTookTheEnergy) {
   Identification identification = ExampleIdentification();
   FitReport& fit = identification.fits[0];
-  fit.derived = {Share("viscous_loss", 0.6213, 0.031), Share("dry_loss", 0.3787, 0.031)};
+  fit.derived = {Share("viscous_loss_share", 0.6213, 0.031), Share("dry_loss_share", 0.3787, 0.031)};
   fit.derived[1].systematic.Add(ErrorSource::kSensor, 0.05);
   EXPECT_EQ(WithBlanks(SummarizeFit(identification, 0).losses),
             "Viscous friction took 62.1 ± 3.1 % of the energy lost, dry friction 38 ± 6 %.");
-  fit.derived.push_back(Share("viscous_loss_first_half_swing", 0.7112, 0.02));
-  fit.derived.push_back(Share("dry_loss_first_half_swing", 0.2888, 0.02));
+  fit.derived.push_back(Share("viscous_loss_share_first_half_swing", 0.7112, 0.02));
+  fit.derived.push_back(Share("dry_loss_share_first_half_swing", 0.2888, 0.02));
   EXPECT_THAT(WithBlanks(SummarizeFit(identification, 0).losses),
               EndsWith("6 % (first half swing: 71.1 ± 2.0 %, 28.9 ± 2.0 %)."));
 }
 
-TEST(SummarizeFit, SaysLossesWithoutErrorsAtABoundAndNothingOfOneLoss) {
+TEST(SummarizeFit, SaysNothingOfLossesAtABoundOrOfOneLoss) {
   Identification identification = ExampleIdentification();
   EXPECT_EQ(SummarizeFit(identification, 0).losses, "");
-  identification.fits[0].derived = {Share("viscous_loss", 1, {}), Share("dry_loss", 0, {})};
-  EXPECT_EQ(WithBlanks(SummarizeFit(identification, 0).losses),
-            "Viscous friction took 100.0 % of the energy lost, dry friction 0.0 %.");
+  identification.fits[0].derived = {Share("viscous_loss_share", 1, {}), Share("dry_loss_share", 0, {})};
+  EXPECT_EQ(SummarizeFit(identification, 0).losses, "");
+  identification.fits[0].derived = {Share("viscous_loss_share", 1, 1e-9), Share("dry_loss_share", 0, 1e-9)};
+  EXPECT_EQ(SummarizeFit(identification, 0).losses, "");
+}
+
+TEST(SummarizeFit, SaysThatTheReadingsDoNotTellTheLosses) {
+  Identification identification = ExampleIdentification();
+  identification.fits[0].derived = {Share("viscous_loss_share", 0.65, 0.26), Share("dry_loss_share", 0.35, 0.26)};
+  EXPECT_EQ(SummarizeFit(identification, 0).losses,
+            "The readings do not tell which friction took how much of the energy.");
 }
 
 TEST(SummarizeFit, GivesAnglesInDegrees) {

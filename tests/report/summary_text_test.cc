@@ -76,19 +76,20 @@ TEST(SummaryText, KeepsTheZeroAndTheTextbookBesideWarnings) {
   EXPECT_THAT(text, HasSubstr("the zero drifts"));
 }
 
-TEST(SummaryText, LeavesOutTheLossesLast) {
+TEST(SummaryText, LeavesOutTheFirstHalfSwingBeforeTheEquationAndAllLossesLast) {
   Identification identification = ExampleIdentification();
-  identification.fits[0].derived = {{"viscous_loss", "1", 0.6, 0.03},
-                                    {"dry_loss", "1", 0.4, 0.03},
-                                    {"viscous_loss_first_half_swing", "1", 0.7, 0.02},
-                                    {"dry_loss_first_half_swing", "1", 0.3, 0.02}};
+  identification.fits[0].derived = {{"viscous_loss_share", "1", 0.6, 0.03},
+                                    {"dry_loss_share", "1", 0.4, 0.03},
+                                    {"viscous_loss_share_first_half_swing", "1", 0.7, 0.02},
+                                    {"dry_loss_share_first_half_swing", "1", 0.3, 0.02}};
   const auto text = [&](int warnings) {
     for (int i = 0; i < warnings; ++i) {
       identification.warnings.push_back({"prior_conflict", "conflict " + std::to_string(i) + " in a sentence"});
     }
     return Unbroken(SummaryText(SummarizeResult(identification), "More."));
   };
-  EXPECT_THAT(text(0), HasSubstr("dry friction 40.0 ± 3.0 % (first half swing: 70.0 ± 2.0 %, 30.0 ± 2.0 %)."));
+  EXPECT_THAT(text(0), HasSubstr("dry friction 40.0 ± 3.0 %. "));
+  EXPECT_THAT(text(0), HasSubstr("sin th = 0"));
   EXPECT_THAT(text(30), Not(HasSubstr("energy lost")));
   EXPECT_THAT(text(30), Not(HasSubstr("textbook")));
 }

@@ -169,6 +169,38 @@ TEST(EnergyLosses, HaveNoHalfSwingIfNoneIsWhole) {
   EXPECT_FALSE(losses.first_half_swing);
 }
 
+TEST(EnergyLosses, AreAbsentOfAMotionThatLosesNothing) {
+  const EnergyLosses losses = Losses("coulomb", StartKind::kRelease, {0.04, 0, 0, 0.5, 0}, 4);
+  EXPECT_FALSE(losses.whole || losses.first_half_swing);
+}
+
+/// A constant torque shifts the point of rest and takes nothing: with linear gravity the motion is that of dry friction
+/// about the shifted point.
+TEST(EnergyLosses, AreThoseOfDryFrictionAloneBesideAConstantTorque) {
+  constexpr double kViscous = 0.002, kDry = 0.004, kAsymmetry = 0.3;
+  const EnergyLosses losses =
+      Losses("asymmetric", StartKind::kRelease, {0.04, kViscous, kDry, kAsymmetry, 0.01, 0}, 0.6);
+  const EnergyLosses shifted =
+      Losses("linear_coulomb", StartKind::kRelease, {0.04, kViscous, kDry, 0.01 + kAsymmetry * kDry, 0}, 0.6);
+  EXPECT_THAT(losses.whole->share[1], DoubleNear(shifted.whole->share[1], 1e-4));  // sin θ is θ to 1e-5
+}
+
+TEST(EnergyLosses, HaveDerivativesOverTheTop) {
+  const std::vector<double> motion = {0.04, 0.002, 0.004, 0.3, 14};
+  const auto share = [](const std::vector<double>& at) {
+    return Losses("coulomb", StartKind::kMoving, at, 6).whole->share[0];
+  };
+  const Eigen::MatrixXd gradient = Losses("coulomb", StartKind::kMoving, motion, 6).whole->gradient;
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    std::vector<double> more = motion, less = motion;
+    const double step = 1e-6 * motion[i];
+    more[i] += step;
+    less[i] -= step;
+    const double slope = (share(more) - share(less)) / (2 * step);
+    EXPECT_THAT(gradient(0, static_cast<Eigen::Index>(i)), DoubleNear(slope, 1e-4 * (1 + std::abs(slope)))) << i;
+  }
+}
+
 TEST(EnergyLosses, AreAbsentWithoutFriction) {
   const EnergyLosses losses = Losses("viscous", StartKind::kRelease, {0.04, 0, 0.5, 5}, 4);  // held to the end
   EXPECT_FALSE(losses.whole || losses.first_half_swing);

@@ -26,7 +26,7 @@ struct LossShares {
 };
 
 /// The losses of a motion from its start to options.end, and of its first whole half swing, which begins at the release
-/// or at a reversal. Absent if nothing is lost, or if there is no whole half swing.
+/// or at a reversal. Absent if less than a millionth of the energy is lost, or if there is no whole half swing.
 struct EnergyLosses {
   std::optional<LossShares> whole, first_half_swing;
 };

@@ -202,7 +202,10 @@ void SetDerived(const FittedRun& run, const Optimum& optimum, const Errors& erro
   if (run.options.with_losses) {
     std::vector<DerivedQuantity> shares =
         LossQuantities(problem.model, report.start, parameters, problem.data.time.back());
-    SetDerivedErrors(covariance, optimum.at_bound, shares);
+    std::vector<int> torques_at_bound;
+    std::ranges::copy_if(optimum.at_bound, std::back_inserter(torques_at_bound),
+                         [&](int i) { return problem.infos[static_cast<std::size_t>(i)].scales_with_gravity(); });
+    SetDerivedErrors(covariance, torques_at_bound, shares);
     if (errors.t95.size() > 0) SetSymmetricIntervals(errors.t95.maxCoeff(), shares);
     std::ranges::move(shares, std::back_inserter(report.derived));
   }

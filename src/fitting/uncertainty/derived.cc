@@ -48,7 +48,7 @@ void AddShares(const std::vector<std::string>& names, const std::optional<LossSh
   if (!losses) return;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    DerivedQuantity share{names[k] + "_loss" + of_what, "1", std::clamp(losses->share[row], 0.0, 1.0)};
+    DerivedQuantity share{names[k] + "_loss_share" + of_what, "1", std::clamp(losses->share[row], 0.0, 1.0)};
     share.range = {0, 1};
     share.gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters));
     share.gradient.head(losses->gradient.cols()) = losses->gradient.row(row);

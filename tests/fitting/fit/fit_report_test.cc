@@ -26,6 +26,9 @@ TEST(OptionsLike, CopiesStartAndNoiseFamily) {
   EXPECT_EQ(OptionsLike(fit, {}).noise, NoiseFamily::kHuber);
   EXPECT_TRUE(FitOptions().search.may_correct);
   EXPECT_FALSE(OptionsLike(fit, {}).search.may_correct);
+  FitOptions with_losses;
+  with_losses.with_losses = true;
+  EXPECT_FALSE(OptionsLike(fit, with_losses).with_losses);
 }
 
 TEST(Termination, HasANameAndAnExitCode) {

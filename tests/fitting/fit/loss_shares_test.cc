@@ -70,8 +70,8 @@ TEST(LossShares, AreThoseOfTheEnergyBalanceWithoutNoise) {
   const EnergyBalance balance(run);
   run.noise = 1e-7;
   const FitReport fit = FitWithLosses(run);
-  EXPECT_THAT(Find(fit, "dry_loss").estimate, DoubleNear(balance.whole(), 1e-5));
-  EXPECT_THAT(Find(fit, "dry_loss_first_half_swing").estimate, DoubleNear(balance.first_half_swing(), 1e-5));
+  EXPECT_THAT(Find(fit, "dry_loss_share").estimate, DoubleNear(balance.whole(), 1e-5));
+  EXPECT_THAT(Find(fit, "dry_loss_share_first_half_swing").estimate, DoubleNear(balance.first_half_swing(), 1e-5));
 }
 
 TEST(LossShares, LieWithinTheirIntervalsIn95PercentOfSwings) {
@@ -84,8 +84,8 @@ TEST(LossShares, LieWithinTheirIntervalsIn95PercentOfSwings) {
       const DerivedQuantity& share = Find(fit, name);
       return share.lower95 && *share.lower95 <= truth && truth <= *share.upper95;
     };
-    whole += contains("dry_loss", balance.whole()) ? 1 : 0;
-    first += contains("dry_loss_first_half_swing", balance.first_half_swing()) ? 1 : 0;
+    whole += contains("dry_loss_share", balance.whole()) ? 1 : 0;
+    first += contains("dry_loss_share_first_half_swing", balance.first_half_swing()) ? 1 : 0;
   }
   EXPECT_THAT(whole, AllOf(Ge(0.93 * kSwings), Le(0.97 * kSwings)));
   EXPECT_THAT(first, AllOf(Ge(0.93 * kSwings), Le(0.97 * kSwings)));

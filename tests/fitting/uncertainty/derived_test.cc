@@ -211,8 +211,9 @@ TEST(LossQuantities, AreSharesOfTheWindowAndOfItsFirstHalfSwing) {
     EXPECT_EQ(share.gradient.size(), 7) << share.name;
     EXPECT_EQ(share.gradient[6], 0) << share.name;  // the zero
   }
-  EXPECT_THAT(names, ElementsAre("viscous_loss", "drag_loss", "dry_loss", "viscous_loss_first_half_swing",
-                                 "drag_loss_first_half_swing", "dry_loss_first_half_swing"));
+  EXPECT_THAT(names, ElementsAre("viscous_loss_share", "drag_loss_share", "dry_loss_share",
+                                 "viscous_loss_share_first_half_swing", "drag_loss_share_first_half_swing",
+                                 "dry_loss_share_first_half_swing"));
   EXPECT_THAT(sum, DoubleNear(2, 1e-12));
 }
 

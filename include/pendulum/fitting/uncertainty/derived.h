@@ -41,9 +41,9 @@ struct IntervalEnds {
 std::vector<DerivedQuantity> DerivedQuantities(const std::vector<ParameterInfo>& infos,
                                                const std::vector<double>& parameters);
 
-/// The shares of the losses over the fitted window, viscous_loss, dry_loss and so on, and over its first whole half
-/// swing, viscous_loss_first_half_swing (MODEL.md eq. (6.21)). None for a law with one loss, or if nothing is lost.
-/// parameters: P; duration: s, from the first sample to the last.
+/// The shares of the losses over the fitted window, viscous_loss_share, dry_loss_share and so on, and over its first
+/// whole half swing, viscous_loss_share_first_half_swing (MODEL.md eq. (6.21)). None for a law with one loss, or if
+/// nothing is lost. parameters: P; duration: s, from the first sample to the last.
 std::vector<DerivedQuantity> LossQuantities(const MotionModel& model, StartKind start,
                                             const std::vector<double>& parameters, double duration);
 
