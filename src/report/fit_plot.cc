@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,8 +49,8 @@ std::vector<Index> SamplesToDraw(const Eigen::VectorXd& values) {
     values.segment(first, count).maxCoeff(&high);
     std::array<Index, 3> chosen = {0, low, high};
     std::ranges::sort(chosen);
-    const auto end = std::ranges::unique(chosen).begin();
-    for (auto each = chosen.begin(); each != end; ++each) samples.push_back(first + *each);
+    const auto repeated = std::ranges::unique(chosen);
+    for (const Index each : std::span(chosen.begin(), repeated.begin())) samples.push_back(first + each);
   }
   return samples;
 }

@@ -160,9 +160,10 @@ std::string ShareText(const DerivedQuantity& share) {
 
 /// The shares of one part of the motion; empty if one of them has no error, as beside a torque at its bound.
 std::vector<DerivedQuantity> SharesOf(const FitReport& fit, const std::string& of_what) {
+  const std::string ending = "_loss_share" + of_what;
   std::vector<DerivedQuantity> shares;
   for (const std::string& name : LossNames(fit.model)) {
-    const auto share = std::ranges::find(fit.derived, name + "_loss_share" + of_what, &DerivedQuantity::name);
+    const auto share = std::ranges::find(fit.derived, name + ending, &DerivedQuantity::name);
     if (share == fit.derived.end() || !ShareError(*share)) return {};
     shares.push_back(*share);
   }
