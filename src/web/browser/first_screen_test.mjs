@@ -96,21 +96,27 @@ test('numbers have a mantissa of one digit before the point', async (t) => {
   }
 });
 
+const kPaper = { width: 680, height: 1031 }; // px: A4 without its margins, 180 mm x 273 mm
+
 /** Number of pages of a PDF. */
 const pagesOf = (pdf) => pdf.toString('latin1').match(/\/Type\s*\/Page\b(?!s)/g).length;
 
 for (const name of ['one law', 'comparison']) {
-  test(`${name}: the printed report has at most three pages`, async (t) => {
+  test(`${name}: the printed report has at most three pages, the first with answer and swing`, async (t) => {
     const page = await openFile(t, report(name).url);
+    await page.setViewportSize(kPaper);
     await page.emulateMedia({ media: 'print' });
     const pdf = await page.pdf({ preferCSSPageSize: true });
     const pages = pagesOf(pdf);
     assert.ok(pages >= 1 && pages <= 3, `${pages} pages`);
-    const wanted = ['#verdict .banner', '.answer-table', '#fit .plot >> nth=0', '#fit .plot >> nth=1', '#provenance'];
+    const swing = ['#fit .plot >> nth=0', '#fit .plot >> nth=1'];
+    const wanted = ['#verdict .banner', '.answer-table', ...swing, '#validation .plot', '#envelope .plot', '#provenance'];
     for (const selector of [...wanted, ...(name === 'comparison' ? ['#comparison'] : [])])
       assert.ok(await page.locator(selector).isVisible(), selector);
     for (const selector of ['.save', '#phase', '#parameters', '.models'])
       for (const element of await page.locator(selector).all()) assert.equal(await element.isVisible(), false, selector);
+    const { y, height } = await page.locator(swing[name === 'comparison' ? 0 : 1]).boundingBox();
+    assert.ok(y + height <= kPaper.height, `the swing ends at ${y + height} px`);
   });
 }
 

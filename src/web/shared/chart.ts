@@ -46,6 +46,8 @@ export interface ChartOptions {
 
 const kPaperWidth = 664; // px: A4 between margins
 const kHalfPaper = 316;
+const kPaperHeight = 0.62; // of the height on a screen, so that answer and swing are on one page
+const kLeastPaperHeight = 150; // px
 const kNarrow = 520; // px; narrower plots have no space for a second axis
 const kLeftRoom = 56; // px, for tick labels of aligned plots
 const kRightRoom = 44;
@@ -171,7 +173,7 @@ export class Chart {
       axes.length > 2 ? 0 : options.aligned === 'with right axis' && wide ? kRightRoom + kLabelRoom : kMargin;
     return {
       width,
-      height: options.height,
+      height: printing() ? Math.max(kLeastPaperHeight, Math.round(kPaperHeight * options.height)) : options.height,
       padding: [10, margin, 0, 0],
       legend: { show: false },
       cursor: {

@@ -8,7 +8,7 @@ import type { Painter } from '../../shared/painter';
 import { significant } from '../../shared/rounding';
 import { extent } from '../../shared/samples';
 import { absent, figure, section } from '../../shared/section';
-import { inShownUnit, quantityOf, shownUnit } from '../../shared/units';
+import { inShownUnit, shownUnit } from '../../shared/units';
 import { curveTurns, decrementRate, exponentialThrough, measuredTurns, zeroOf, type Turn } from '../envelope';
 import { rankOf, shownFitOf, type OneRecording, type RecordedFit } from '../report';
 import { told } from '../told';
@@ -76,7 +76,7 @@ class EnvelopePlot {
         `${significant(turns[turns.length - 1].amplitude, 3)} ${shownUnit(unit).unit} on a ${this.log ? 'logarithmic' : 'linear'} axis` +
         `${curves.length > 0 ? `, with ${curves.map((curve) => curve.name).join(' and ')}` : ''}.`,
       xLabel: 'time [s]',
-      yLabel: () => `amplitude of the ${quantityOf(unit)} [${shownUnit(unit).unit}]`,
+      yLabel: () => `amplitude [${shownUnit(unit).unit}]`,
       xRange: () => padded(spans, 0.02),
       yRange: () => this.yRange(),
       yLog: () => this.log,
