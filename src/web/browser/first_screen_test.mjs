@@ -96,6 +96,7 @@ test('numbers have a mantissa of one digit before the point', async (t) => {
   }
 });
 
+const [swing, residuals] = ['#fit .plot >> nth=0', '#fit .plot >> nth=1'];
 const kPaper = { width: 680, height: 1031 }; // px: A4 without its margins, 180 mm x 273 mm
 
 /** Number of pages of a PDF. */
@@ -106,17 +107,16 @@ for (const name of ['one law', 'comparison']) {
     const page = await openFile(t, report(name).url);
     await page.setViewportSize(kPaper);
     await page.emulateMedia({ media: 'print' });
+    const { y, height } = await page.locator(name === 'one law' ? residuals : swing).boundingBox();
+    assert.ok(y + height <= kPaper.height, `the swing ends at ${y + height} px`);
     const pdf = await page.pdf({ preferCSSPageSize: true });
     const pages = pagesOf(pdf);
     assert.ok(pages >= 1 && pages <= 3, `${pages} pages`);
-    const swing = ['#fit .plot >> nth=0', '#fit .plot >> nth=1'];
-    const wanted = ['#verdict .banner', '.answer-table', ...swing, '#validation .plot', '#envelope .plot', '#provenance'];
+    const wanted = ['#verdict .banner', '.answer-table', swing, residuals, '#validation .plot', '#envelope .plot', '#provenance'];
     for (const selector of [...wanted, ...(name === 'comparison' ? ['#comparison'] : [])])
       assert.ok(await page.locator(selector).isVisible(), selector);
     for (const selector of ['.save', '#phase', '#parameters', '.models'])
       for (const element of await page.locator(selector).all()) assert.equal(await element.isVisible(), false, selector);
-    const { y, height } = await page.locator(swing[name === 'comparison' ? 0 : 1]).boundingBox();
-    assert.ok(y + height <= kPaper.height, `the swing ends at ${y + height} px`);
   });
 }
 
