@@ -130,7 +130,9 @@ std::string RoundedText(double x, const Rounding& rounding) {
     const double unit = std::pow(10.0, rounding.exponent - rounding.decimals);
     return FixedText(unit * std::round(x / unit) + 0.0, 0);  // + 0.0: never -0
   }
-  return Mantissa(x, rounding) + ExponentText(rounding.exponent);
+  const std::string mantissa = Mantissa(x, rounding);
+  const bool is_zero = mantissa.find_first_of("123456789") == std::string::npos;
+  return is_zero && rounding.exponent != 0 ? "0" : mantissa + ExponentText(rounding.exponent);
 }
 
 std::string FixedText(double x, int decimals) {

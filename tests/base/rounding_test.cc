@@ -85,6 +85,7 @@ TEST(RoundedText, RoundsAllNumbersOfAQuantityAlike) {
   EXPECT_EQ(RoundedText(0.08123, milli), "0.0812");
   const Rounding micro = PdgRounding(3e-6, 1.2e-7);
   EXPECT_EQ(RoundedText(2.76e-6, micro), "2.76e-06");
+  EXPECT_EQ(RoundedText(-2e-9, micro), "0");  // not 0.00e-06
 }
 
 TEST(SignificantRounding, KeepsTrailingZeros) {
