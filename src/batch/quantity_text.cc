@@ -23,6 +23,11 @@ std::string SpreadText(const std::optional<double>& size) {
   return *size > 0 ? RoundedText(*size, SignificantRounding(*size, kDigits)) : "0";
 }
 
+std::string DistanceText(double z) {
+  constexpr int kDigits = 3;
+  return std::isfinite(z) ? NumberText(z, kDigits) : "-";
+}
+
 std::string RatioText(double ratio) {
   constexpr int kDigits = 3;
   return std::isfinite(ratio) ? NumberText(ratio, kDigits) : "-";

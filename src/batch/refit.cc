@@ -374,6 +374,7 @@ Result<RefitCounts> Refit(const Source& source, Store& store, const RefitOptions
   ASSIGN_OR_RETURN(const auto batch, BatchJson(options));
   ASSIGN_OR_RETURN(const auto meta,
                    store.Begin(source, options.shard, batch, [&] { return CheckGroupBy(store, options.group_by); }));
+  RETURN_IF_ERROR(store.KeepCommand(source.folder ? options.flags : "", source.folder.value_or("")));
   if (options.force) {
     RETURN_IF_ERROR(store.MarkBatch());
   }

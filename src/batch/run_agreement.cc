@@ -145,10 +145,10 @@ DisagreeingRun DisagreementOf(const std::vector<SeparateEstimates>& estimates, s
       weights += weight;
     }
     const double others = sum / weights;
-    const double z = (own.value[j] - others) / std::sqrt(own.covariance(j, j) + 1 / weights);
-    if (!(std::abs(z) > largest)) continue;
-    largest = std::abs(z);
-    described = {id, own.names[static_cast<std::size_t>(j)], own.value[j], others, z};
+    const double errors = std::abs(own.value[j] - others) / std::sqrt(own.covariance(j, j) + 1 / weights);
+    if (!(errors > largest)) continue;
+    largest = errors;
+    described = {id, own.names[static_cast<std::size_t>(j)], own.value[j], others};
   }
   return described;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <system_error>
@@ -62,17 +63,15 @@ std::vector<bool> IsOutlier(std::size_t runs, const std::vector<Outlier>& outlie
   return is;
 }
 
-void AddOutliersOf(const RunValues& values, const std::vector<std::size_t>& runs, double limit,
-                   std::vector<Outlier>& outliers) {
-  std::vector<double> estimates, distances;
+/// Sets the z of the runs of one group.
+void SetGroupDistances(const RunValues& values, const std::vector<std::size_t>& runs, std::vector<double>& z) {
+  std::vector<double> estimates;
   for (const std::size_t run : runs) estimates.push_back(values.estimate[run]);
-  const double median = MedianOf(estimates);
-  for (const double estimate : estimates) distances.push_back(std::abs(estimate - median));
-  const double scale = RobustStdDev(estimates);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const double own = values.std_error[runs[i]];
+  const double median = MedianOf(estimates), scale = RobustStdDev(estimates);
+  for (const std::size_t run : runs) {
+    const double own = values.std_error[run];
     const double sigma = std::isfinite(own) ? std::max(scale, own) : scale;
-    if (distances[i] > limit * sigma && sigma > 0) outliers.push_back({runs[i], distances[i] / sigma});
+    if (sigma > 0) z[run] = std::abs(values.estimate[run] - median) / sigma;
   }
 }
 
@@ -139,6 +138,12 @@ Distribution Describe(const std::vector<double>& values) {
   return distribution;
 }
 
+std::vector<double> DistancesFromGroup(const RunValues& values) {
+  std::vector<double> z(values.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [group, runs] : Groups(values)) SetGroupDistances(values, runs, z);
+  return z;
+}
+
 std::vector<Outlier> FindOutliers(const RunValues& values) {
   constexpr std::size_t kMinRuns = 5;
   constexpr double kFalseAlarms = 0.05;
@@ -146,8 +151,11 @@ std::vector<Outlier> FindOutliers(const RunValues& values) {
   if (values.size() < kMinRuns) return outliers;
   const double each = -std::expm1(std::log1p(-kFalseAlarms) / static_cast<double>(values.size()));
   const double limit = -NormalQuantile(each / 2);
+  const std::vector<double> z = DistancesFromGroup(values);
   for (const auto& [group, runs] : Groups(values)) {
-    if (runs.size() >= kMinRuns) AddOutliersOf(values, runs, limit, outliers);
+    for (const std::size_t run : runs) {
+      if (runs.size() >= kMinRuns && z[run] > limit) outliers.push_back({run, z[run]});
+    }
   }
   std::ranges::sort(outliers, std::greater(), &Outlier::z);
   return outliers;

@@ -232,7 +232,8 @@ void CopyAttachedShard(SQLite::Database& database) {
   database.exec("INSERT OR IGNORE INTO main.options SELECT * FROM shard.options");
   database.exec(
       "INSERT INTO main.meta SELECT * FROM shard.meta WHERE true "
-      "ON CONFLICT(key) DO UPDATE SET value = excluded.value");
+      "ON CONFLICT(key) DO UPDATE SET value = CASE key WHEN 'began' THEN min(value, excluded.value) "
+      "WHEN 'ended' THEN max(value, excluded.value) ELSE excluded.value END");
   database.exec("UPDATE main.meta SET value = '' WHERE key IN ('shard', 'shard_count')");
 }
 
@@ -241,7 +242,11 @@ Result<std::int64_t> CopyShards(const fs::path& folder, std::int64_t count, Stor
   return sqlite::Guard(store.name(), [&]() -> Result<std::int64_t> {
     SQLite::Database& database = store.database();
     database.exec("PRAGMA synchronous = OFF");  // the complete file is synchronised at the end
-    database.exec("UPDATE runs SET position = -1 WHERE position <> -1");
+    database.exec("UPDATE runs SET position = -1, news = NULL WHERE position <> -1");
+    database.exec("DELETE FROM meta WHERE key IN ('began', 'ended')");
+    database.exec(
+        "CREATE TEMP TABLE known(id TEXT PRIMARY KEY, fitted TEXT);"
+        "INSERT INTO known SELECT id, fitted FROM runs WHERE exit_code IS NOT NULL");
     std::int64_t runs = 0;
     for (std::int64_t k = 0; k < count; ++k) {
       SQLite::Statement attach(database, "ATTACH ? AS shard");
@@ -252,6 +257,9 @@ Result<std::int64_t> CopyShards(const fs::path& folder, std::int64_t count, Stor
       all.commit();
       database.exec("DETACH shard");
     }
+    database.exec(  // for a shard, a run is new that the merged store has had before
+        "UPDATE runs SET news = iif(runs.fitted IS known.fitted, NULL, 'again') FROM known "
+        "WHERE runs.id = known.id AND news IS NOT NULL");
     return runs;
   });
 }

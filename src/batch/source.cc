@@ -220,8 +220,12 @@ Result<Source> OpenSource(const fs::path& path) {
     RETURN_IF_ERROR(InputFile::Open(path, "manifest"));
   }
   const fs::path folder = path == "-" ? fs::path() : path.parent_path();
-  return Source{path.string(), [path](const EntrySink& take) { return ReadManifest(path, take); },
-                [folder](const std::string& file) { return ReadFileInFolder(folder, file); }};
+  return Source{path.string(),
+                [path](const EntrySink& take) { return ReadManifest(path, take); },
+                [folder](const std::string& file) { return ReadFileInFolder(folder, file); },
+                {},
+                {},
+                folder.string()};
 }
 
 Result<Source> FindSource(const std::vector<std::string>& patterns) {
@@ -247,8 +251,9 @@ Result<Source> FindSource(const std::vector<std::string>& patterns) {
     }
     return {};
   };
-  return Source{patterns.front(), for_each, [](const std::string& file) { return ReadFileInFolder({}, file); },
-                std::move(left_out), std::move(lists)};
+  return Source{
+      patterns.front(),    for_each,         [](const std::string& file) { return ReadFileInFolder({}, file); },
+      std::move(left_out), std::move(lists), ""};
 }
 
 Result<PackCounts> Pack(const Source& source, const fs::path& path) {

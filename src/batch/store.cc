@@ -22,6 +22,7 @@
 #include "pendulum/base/json.h"
 #include "pendulum/base/sha256.h"
 #include "pendulum/base/try.h"
+#include "pendulum/base/utc_time.h"
 #include "pendulum/base/version.h"
 #include "pendulum/batch/temporary_store.h"
 
@@ -215,6 +216,7 @@ struct Store::State {
   Result<std::string> FillBatchTable(const Source& source);
   Result<std::int64_t> MarkOtherFiles(const Source& source, bool marks_unreadable);
   void RestrictToShard(const std::optional<Shard>& shard, StoreMeta& meta);
+  void BeginNews(const StoreMeta& meta);
   void PutRows(const RunOutcome& outcome, std::int64_t run);
   void PutRun(const RunOutcome& outcome, std::int64_t run);
   void PutFits(const std::vector<FitRow>& rows, std::int64_t run);
@@ -225,6 +227,7 @@ struct Store::State {
   std::string name;
   SQLite::Database database;
   const std::atomic<bool>* stop = nullptr;
+  std::function<std::string()> now = [] { return UtcTimeText(); };
   std::unique_ptr<SQLite::Transaction> transaction;
   std::unique_ptr<SQLite::Statement> run_of, result_of, renamed_runs, set_stale, add_run, put_run, keep_fits, drop_fits,
       drop_quantities, put_fit, put_quantity;
@@ -324,6 +327,16 @@ void Store::State::RestrictToShard(const std::optional<Shard>& shard, StoreMeta&
   }
 }
 
+/// Forgets what the refit before did, unless this one continues it.
+void Store::State::BeginNews(const StoreMeta& meta) {
+  const bool continues = GetMeta("complete") == "0" && GetMeta("manifest_sha256") == meta.manifest_sha256 &&
+                         GetMeta("options_sha256") == meta.options_sha256;
+  if (continues) return;
+  database.exec("UPDATE runs SET news = NULL WHERE news IS NOT NULL");
+  SetMeta("began", now());
+  SetMeta("ended", "");
+}
+
 void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
   const Provenance& provenance = outcome.provenance;
   const bool fitted = !outcome.result.is_null();
@@ -339,7 +352,7 @@ void Store::State::PutRun(const RunOutcome& outcome, std::int64_t run) {
   sqlite::Bind(Prepared(put_run, kPutRun), outcome.exit_code, NullIfEmpty(outcome.reason.text()),
                NullIfEmpty(outcome.reason.place), NullIfEmpty(outcome.reason.sentence), recommended,
                provenance.data_sha256, provenance.rig_sha256, provenance.calibration_sha256, provenance.options_sha256,
-               provenance.version, provenance.cpu, result, sources, run)
+               provenance.version, provenance.cpu, result, sources, now(), run)
       .exec();
 }
 
@@ -425,13 +438,16 @@ Result<StoreMeta> Store::Begin(const Source& source, const std::optional<Shard>&
                                const std::function<Result<void>()>& check) {
   return sqlite::Guard(name(), [&]() -> Result<StoreMeta> {
     SQLite::Transaction all(state_->database, SQLite::TransactionBehavior::IMMEDIATE);
-    StoreMeta meta{std::string(kVersion), "", "", shard, 0, false};
+    StoreMeta meta;
+    meta.version = std::string(kVersion);
+    meta.shard = shard;
     ASSIGN_OR_RETURN(auto manifest, state_->FillBatchTable(source));
     auto options = Sha256(options_json);
     if (!options) return tl::unexpected(options.error());
     meta.manifest_sha256 = std::move(manifest);
     meta.options_sha256 = *std::move(options);
     state_->RestrictToShard(shard, meta);
+    state_->BeginNews(meta);
     const std::string former_options = state_->GetMeta("options_sha256");
     state_->database.exec(MarkFormer(kHasOtherEntry));
     if (!former_options.empty() && former_options != meta.options_sha256) state_->database.exec(MarkFormer("true"));
@@ -562,6 +578,7 @@ Result<void> Store::Complete() {
   return sqlite::Guard(name(), [&]() -> Result<void> {
     state_->BeginIfNone();
     state_->SetMeta("complete", "1");
+    state_->SetMeta("ended", state_->now());
     state_->Commit();
     return {};
   });
@@ -578,7 +595,11 @@ Result<StoreMeta> Store::Meta() {
                    state_->GetMeta("options_sha256"),
                    std::nullopt,
                    number("runs"),
-                   number("complete") == 1};
+                   number("complete") == 1,
+                   state_->GetMeta("began"),
+                   state_->GetMeta("ended"),
+                   state_->GetMeta("flags"),
+                   state_->GetMeta("folder")};
     if (!state_->GetMeta("shard").empty()) meta.shard = Shard{number("shard"), number("shard_count")};
     return meta;
   });
@@ -617,6 +638,17 @@ Result<void> Store::Check() {
     const std::string found = sqlite::Texts(state_->database, "PRAGMA quick_check(1)").front();
     if (found == "ok") return {};
     return Fault(name(), "the file is damaged (" + found + "); restore it, or start with a new file");
+  });
+}
+
+void Store::SetClock(std::function<std::string()> now) { state_->now = std::move(now); }
+
+Result<void> Store::KeepCommand(const std::string& flags, const std::string& folder) {
+  return sqlite::Guard(name(), [&]() -> Result<void> {
+    state_->BeginIfNone();
+    state_->SetMeta("flags", flags);
+    state_->SetMeta("folder", folder);
+    return {};
   });
 }
 

@@ -83,7 +83,8 @@ UPDATE runs SET stale = '--force asked for a new fit, and this run has not been 
 
 inline constexpr const char* kPutRun = R"sql(
 UPDATE runs SET exit_code = ?, reason = ?, place = ?, sentence = ?, recommended = ?, data_sha256 = ?, rig_sha256 = ?, calibration_sha256 = ?,
-  options_sha256 = ?, version = ?, cpu = ?, result = ?, sources = ?, stale = NULL, attempt = NULL
+  options_sha256 = ?, version = ?, cpu = ?, result = ?, sources = ?, stale = NULL, attempt = NULL,
+  fitted = ?, news = iif(exit_code IS NULL, 'new', 'again')
   WHERE run = ?)sql";
 
 }  // namespace pendulum

@@ -12,7 +12,7 @@ inline constexpr int kStoreId = 0x50656e64;
 /// Migrations of a store's tables: element n - 1 updates version n - 1 to n (PRAGMA user_version), n from 1 on. A
 /// released migration is never changed; a new one is appended, and tests/batch/golden_stores.py adds a store with it.
 /// The view `results` is replaced after them (ResultsView). SQLite keeps the comments, so .schema explains the tables.
-inline constexpr std::array<std::string_view, 8> kStoreMigrations = {R"sql(
+inline constexpr std::array<std::string_view, 9> kStoreMigrations = {R"sql(
 CREATE TABLE meta(  -- about the whole store, of the last refit: version, manifest_sha256, options_sha256,
                     -- shard and shard_count (of a shard only), runs, complete (1 when every run has its rows)
   key TEXT PRIMARY KEY, value) WITHOUT ROWID;
@@ -123,6 +123,10 @@ UPDATE runs SET sentence = ltrim(substr(reason, length(path) + 1), ':0123456789 
   WHERE sentence IS NULL AND substr(reason, 1, length(path)) = path AND substr(reason, length(path) + 1) GLOB ':[0-9]*';
 UPDATE runs SET place = rtrim(substr(reason, 1, length(reason) - length(sentence)), ': ')
   WHERE sentence IS NOT NULL AND place IS NULL;
+)sql",
+                                                                     R"sql(
+ALTER TABLE runs ADD COLUMN fitted TEXT;  -- when its rows were stored, RFC 3339, UTC; NULL: not known
+ALTER TABLE runs ADD COLUMN news TEXT;    -- what the last refit did: new (its first fit) or again; NULL: nothing
 )sql"};
 
 /// The first version whose quantities have total_std_error, and runs have sources.

@@ -12,9 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "batch/disagreement_text.h"
 #include "batch/run_agreement.h"
 #include "batch/run_groups.h"
 #include "batch/run_kinds.h"
+#include "batch/run_list.h"
 #include "batch/sqlite.h"
 #include "batch/summary_verdict.h"
 #include "pendulum/analysis/separate_estimates.h"
@@ -154,9 +156,8 @@ std::vector<TrendSummary::Point> PointsOf(const QuantityRuns& runs, const Contex
   return points;
 }
 
-std::string TrendText(const Trend& trend, const std::string& slope) {
-  constexpr double kLevel = 0.01;
-  return (trend.p < kLevel ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
+std::string TrendText(const Trend& trend, bool is_moving, const std::string& slope) {
+  return (is_moving ? "it changes by " : "no trend: ") + slope + " (p " + ProbabilityText(trend.p) + ")";
 }
 
 std::optional<TrendSummary> TrendOf(const QuantityRuns& runs, const Context& context, const std::string& unit,
@@ -166,7 +167,10 @@ std::optional<TrendSummary> TrendOf(const QuantityRuns& runs, const Context& con
   const std::string column = context.trend_by.empty() ? "position" : context.trend_by;
   const std::string per = runs.dates ? "per day" : context.trend_by.empty() ? "per run" : "per unit of " + column;
   const std::string slope = PlusMinusText(trend->slope, trend->std_error) + Spaced(unit) + " " + per;
-  return TrendSummary{*trend, column, runs.dates, slope, TrendText(*trend, slope), PointsOf(runs, context)};
+  constexpr double kLevel = 0.01;
+  const bool is_moving = trend->p < kLevel;
+  return TrendSummary{
+      *trend, column, runs.dates, is_moving, slope, TrendText(*trend, is_moving, slope), PointsOf(runs, context)};
 }
 
 /// The median of those that are finite.
@@ -241,6 +245,28 @@ SELECT model, name, unit, min(derived) FROM quantities WHERE ?1 = '' OR (model =
     if (summary) quantities.push_back(*std::move(summary));
   }
   return quantities;
+}
+
+/// Gives the runs that disagree the z of the table of outliers, so that a run has one figure.
+void SetDistances(SQLite::Database& database, const Context& context, const std::vector<QuantitySummary>& quantities,
+                  RunAgreement& agreement) {
+  for (const QuantitySummary& quantity : quantities) {
+    if (quantity.law != agreement.law) continue;
+    std::vector<DisagreeingRun*> named;
+    for (GroupAgreement& row : agreement.rows) {
+      for (DisagreeingRun& run : row.outliers) {
+        if (run.parameter == quantity.name) named.push_back(&run);
+      }
+    }
+    if (named.empty()) continue;
+    const QuantityRuns runs =
+        RunsOf(database, {quantity.law, quantity.name, quantity.unit, quantity.is_derived}, context);
+    const std::vector<double> z = DistancesFromGroup(runs.values);
+    for (DisagreeingRun* const run : named) {
+      const auto found = std::ranges::find(runs.ids, run->id);
+      if (found != runs.ids.end()) run->z = z[static_cast<std::size_t>(found - runs.ids.begin())];
+    }
+  }
 }
 
 Grouping GroupingOf(const RunGroups& groups) {
@@ -356,7 +382,12 @@ Result<StoreSummary> Summarize(Store& store, const SummaryOptions& options) {
     summary.headline = CountRuns(database, meta);
     const std::set<std::string>& outliers = summary.agreement.outliers;
     const std::string only = options.main_law_only ? summary.main_law : "";
-    summary.quantities = SummarizeQuantities(database, {groups, outliers, options.trend_by}, only);
+    const Context context{groups, outliers, options.trend_by};
+    summary.quantities = SummarizeQuantities(database, context, only);
+    SetDistances(database, context, summary.quantities, summary.agreement);
+    summary.disagreement = DisagreementText(summary);
+    summary.news = NewsOf(database, meta);
+    if (!options.without_runs) summary.runs = ListRuns(database, meta, DifferencesById(summary));
     for (const LawCounts& law : summary.overview.laws) {
       if (!only.empty() && only != law.law) continue;
       summary.verdicts.push_back(VerdictOf(law.law, summary.quantities, groups, !outliers.empty()));

@@ -59,11 +59,33 @@ Json VerdictJson(const ErrorVerdict& verdict) {
   return {{"model", verdict.law}, {"verdict", verdict.verdict}, {"level", verdict.level}, {"text", verdict.text}};
 }
 
+Json NewsJson(const RefitNews& news) {
+  return {{"began", TextOrNull(news.began)},
+          {"ended", TextOrNull(news.ended)},
+          {"new", news.fresh},
+          {"again", news.again},
+          {"text", TextOrNull(news.text)}};
+}
+
+Json RunJson(const ListedRun& run) {
+  return {{"id", run.id},
+          {"level", run.level},
+          {"state", run.state},
+          {"text", TextOrNull(run.text)},
+          {"model", TextOrNull(run.law)},
+          {"fitted", TextOrNull(run.fitted)},
+          {"news", TextOrNull(run.news)},
+          {"command", TextOrNull(run.command)}};
+}
+
 Json AgreementJson(const RunAgreement& agreement) {
   if (agreement.groups == 0) return nullptr;
   const auto run_json = [](const DisagreeingRun& run) {
-    return Json{
-        {"id", run.id}, {"parameter", run.parameter}, {"estimate", run.estimate}, {"others", run.others}, {"z", run.z}};
+    return Json{{"id", run.id},
+                {"parameter", run.parameter},
+                {"estimate", run.estimate},
+                {"others", run.others},
+                {"z", NumberOrNull(run.z)}};
   };
   const auto row_json = [&](const GroupAgreement& row) {
     return Json{{"group", GroupJson(row.group)},
@@ -132,7 +154,7 @@ Json DistributionJson(const QuantitySummary& quantity) {
           {"runs", quantity.runs},
           {"median", distribution.median},
           {"mean", distribution.mean},
-          {"std_dev", distribution.std_dev},
+          {"std_dev", quantity.runs == 1 ? Json(nullptr) : Json(distribution.std_dev)},
           {"minimum", distribution.minimum},
           {"maximum", distribution.maximum},
           {"lower_quartile", distribution.lower_quartile},
@@ -198,7 +220,8 @@ Json OutlierJson(const OutlyingRun& run) {
           {"estimate", run.estimate},
           {"std_error", NumberOrNull(run.std_error)},
           {"text", PlusMinusText(run.estimate, run.std_error)},
-          {"z", run.z}};
+          {"z", run.z},
+          {"z_text", DistanceText(run.z)}};
 }
 
 Json TrendJson(const QuantitySummary& quantity) {
@@ -218,6 +241,7 @@ Json TrendJson(const QuantitySummary& quantity) {
           {"std_error", trend.trend.std_error},
           {"p", trend.trend.p},
           {"text", trend.text},
+          {"is_moving", trend.is_moving},
           {"texts", {{"slope", trend.slope}, {"p", ProbabilityText(trend.trend.p)}}},
           {"points", ArrayOf(trend.points, point_json)},
           {"points_total", quantity.runs}};
@@ -245,6 +269,9 @@ nlohmann::ordered_json ToJson(const StoreSummary& summary) {
           {"main_model", TextOrNull(summary.main_law)},
           {"verdicts", ArrayOf(summary.verdicts, VerdictJson)},
           {"agreement", AgreementJson(summary.agreement)},
+          {"disagreement", TextOrNull(summary.disagreement)},
+          {"refit", NewsJson(summary.news)},
+          {"runs", ArrayOf(summary.runs, RunJson)},
           {"store", StoreJson(summary.store)},
           {"group_by", TextOrNull(summary.grouping.name)},
           {"trend_by", TextOrNull(summary.trend_by)},

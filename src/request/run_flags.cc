@@ -540,6 +540,19 @@ std::variant<std::string*, bool*> RunFlag::In(RunFlags& flags) const {
   return &(flags.*std::get<bool RunFlags::*>(value));
 }
 
+nlohmann::ordered_json GivenFlags(const RunFlags& flags) {
+  RunFlags given = flags, none;
+  Json json = Json::object();
+  for (const RunFlag& flag : RunFlagTable()) {
+    std::visit(
+        [&](auto* value) {
+          if (*value != *std::get<decltype(value)>(flag.In(none))) json[std::string(flag.name)] = *value;
+        },
+        flag.In(given));
+  }
+  return json;
+}
+
 const std::vector<RunFlag>& RunFlagTable() {
   static const std::vector<RunFlag> table = [] {
     std::vector<RunFlag> flags = MakeTable();

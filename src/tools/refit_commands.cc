@@ -113,7 +113,7 @@ Result<int> ShowStatus(const RefitPendulumsOptions& options) {
   }
   if (!has_fits) return WriteText(options.quiet ? "" : text);
   SummaryOptions how = options.summary;
-  how.main_law_only = true;
+  how.main_law_only = how.without_runs = true;
   how.without_agreement = options.quiet;
   ASSIGN_OR_RETURN(const auto summary, Summarize(store, how));
   return WriteText(options.quiet ? QuietText(summary) : text + SummaryText(summary, path));

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "pendulum/base/format.h"
+#include "pendulum/base/json.h"
 #include "pendulum/base/try.h"
 #include "pendulum/recording/readers/file_names.h"
 #include "pendulum/request/flag_values.h"
@@ -124,6 +125,14 @@ Result<void> ParseShardFlags(const RefitFlags& flags, RefitPendulumsOptions& opt
   return {};
 }
 
+/// The flags with which fit_pendulum fits a recording of the batch.
+nlohmann::ordered_json FlagsOfARun(const RunFlags& flags) {
+  RunFlags of_a_run = flags;
+  of_a_run.threads.clear();
+  if (of_a_run.model.empty()) of_a_run.model = kDefaultModel;  // without it the recording may choose a spring
+  return GivenFlags(of_a_run);
+}
+
 Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options) {
   RefitFlags flags = given;
   std::error_code unknown;
@@ -154,6 +163,7 @@ Result<void> ParseRefit(const RefitFlags& given, RefitPendulumsOptions& options)
   if (flags.release == "all") {
     return BadFlag("--release all makes several results per run, but a batch stores one; give one release");
   }
+  options.refit.flags = JsonText(FlagsOfARun(flags));
   RETURN_IF_ERROR(ReadSensorFile(flags.sensor));
   ASSIGN_OR_RETURN(auto run, MakeIdentifyOptions(flags));
   options.refit.threads = run.fit.threads;

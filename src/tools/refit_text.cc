@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -137,33 +136,6 @@ std::string ParametersText(const StoreSummary& summary, bool of_the_rig_only) {
                       rows, kTextIndent);
 }
 
-/// Names the recordings that disagree with the others of their pendulum.
-std::string OutliersText(const StoreSummary& summary) {
-  constexpr std::size_t kNamed = 3;
-  constexpr int kDigits = 5;
-  std::set<std::string> known;
-  std::string text;
-  const auto take = [&](const std::string& id, const std::string& parameter, double estimate, const std::string& whose,
-                        double others) {
-    if (!known.insert(id).second || known.size() > kNamed) return;
-    text += (text.empty() ? "" : "; ") + Printable(id) + " (" + parameter + " " + NumberText(estimate, kDigits) + ", " +
-            whose + " " + NumberText(others, kDigits) + ")";
-  };
-  for (const GroupAgreement& row : summary.agreement.rows) {
-    for (const DisagreeingRun& run : row.outliers) take(run.id, run.parameter, run.estimate, "the others", run.others);
-  }
-  for (const QuantitySummary& quantity : summary.quantities) {
-    if (!summary.IsMainParameter(quantity)) continue;
-    for (const OutlyingRun& run : quantity.outliers)
-      take(run.id, quantity.name, run.estimate, "median", quantity.distribution.median);
-  }
-  if (known.empty()) return "";
-  const std::size_t count = known.size();
-  return (count == 1 ? "One recording disagrees" : std::to_string(count) + " recordings disagree") +
-         std::string(" with the others of the same pendulum: ") + text +
-         (count > kNamed ? "; and " + std::to_string(count - kNamed) + " more" : "") + ".";
-}
-
 /// The beginning of a reason; --details shows all of it.
 std::string Beginning(const std::string& reason) {
   constexpr std::size_t kLongest = 90;  // bytes, of about two lines
@@ -212,7 +184,7 @@ std::string SummaryText(const StoreSummary& summary, const std::string& store, i
   const std::string refused = ExamplesText("Refused", runs.refused_runs, runs.refused, true);
   const std::string stale = ExamplesText("With a former result only", runs.stale_runs, runs.stale, true);
   for (const std::string& line :
-       {stale, OutliersText(summary), grouping.is_compared ? VerdictText(summary) : std::string(),
+       {stale, Printable(summary.disagreement), grouping.is_compared ? VerdictText(summary) : std::string(),
         folding < 2 ? missing : "", folding < 2 ? refused : "", folding < 1 ? LawText(summary) : ""}) {
     if (!line.empty()) text += Prose(line);
   }

@@ -206,7 +206,7 @@ void MakeFirstVersion(const std::string& path) {
 TEST_F(FitStoreFileTest, UpdatesAnOlderStore) {
   MakeFirstVersion(path_);
   Add("new");
-  EXPECT_EQ(NumberOutside("PRAGMA user_version"), 8);
+  EXPECT_EQ(NumberOutside("PRAGMA user_version"), 9);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE id = 'old' AND exit_code = 0"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM quantities WHERE name = 'hysteresis'"), 1);
   EXPECT_EQ(NumberOutside("SELECT count(*) FROM runs WHERE json_extract(result, '$.schema_version') = 3 AND "

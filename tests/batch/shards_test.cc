@@ -88,6 +88,15 @@ TEST_F(ShardsTest, MayBeMergedTwice) {
   EXPECT_EQ(AllRows(store_), rows);
 }
 
+TEST_F(ShardsTest, AreNoNewsWhenTheyAreMergedAgain) {
+  const std::string news = "SELECT DISTINCT coalesce(news, 'as before') FROM runs";
+  AllShards(3);
+  ASSERT_TRUE(Merge(3));
+  EXPECT_EQ(Value(store_, news), "new");
+  ASSERT_TRUE(Merge(3));
+  EXPECT_EQ(Value(store_, news), "as before");
+}
+
 TEST_F(ShardsTest, ReplaceOnlyTheirOwnRuns) {
   folder_.Write("other.csv", "path,id\n0.csv,other\n1.csv,b\n");  // b is 1.csv in this batch, too
   RefitInto(store_, folder_ / "other.csv", OptionsWith({"drag"}));

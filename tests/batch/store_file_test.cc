@@ -170,7 +170,7 @@ TEST_F(StoreFileTest, StartsInAFileWithoutTables) {
   file.close();
   EXPECT_EQ(FaultOf(Store::Mode::kRead).code, StatusCode::kDataLoss);
   Store store = Make({"a"});
-  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 8);
+  EXPECT_EQ(store.database().execAndGet("PRAGMA user_version").getInt(), 9);
   EXPECT_EQ(Reopen().Count()->runs, 1);
 }
 
@@ -259,7 +259,7 @@ TEST_F(StoreFileTest, RefusesAStoreOfANewerVersion) {
     EXPECT_EQ(FaultOf(mode).code, StatusCode::kDataLoss);
     EXPECT_EQ(FaultOf(mode).message(), path_ +
                                            ": the store has version 99 of a newer program, but this program reads "
-                                           "versions up to 8; use the newer program");
+                                           "versions up to 9; use the newer program");
   }
 }
 

@@ -87,7 +87,7 @@ std::int64_t NumberOf(Store& store, const std::string& query) { return store.dat
 
 TEST_F(StoreTest, HasTheTablesOfItsSchema) {
   Store store = Make({"a"});
-  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 8);
+  EXPECT_EQ(NumberOf(store, "PRAGMA user_version"), 9);
   EXPECT_EQ(NumberOf(store, "PRAGMA application_id"), 0x50656e64);  // "Pend"
   EXPECT_THAT(TextsOf(store, "SELECT name FROM sqlite_schema WHERE sql LIKE '%--%' ORDER BY name"),
               ElementsAre("all_fits", "answers", "batches", "files", "fits", "meta", "options", "quantities",

@@ -54,6 +54,7 @@ TEST(MakeRefitPendulumsOptions, RefitsWithoutACommand) {
   EXPECT_THAT(options->stores, ElementsAre("results.sqlite"));
   EXPECT_THAT(options->refit.run.models, ElementsAre("viscous", "coulomb"));
   EXPECT_EQ(options->refit.threads, 3);
+  EXPECT_EQ(options->refit.flags, R"({"model":"viscous,coulomb"})");
   EXPECT_TRUE(options->refit.force);
   EXPECT_FALSE(options->refit.shard);
 }

@@ -17,6 +17,9 @@ std::string ValueText(const Distribution& distribution, double value);
 /// A standard error or a spread with two digits; "-" if there is none.
 std::string SpreadText(const std::optional<double>& size);
 
+/// How far a run is from its group (Outlier::z) with three digits; "-" if that is not known.
+std::string DistanceText(double z);
+
 /// A ratio of scatter to errors with three digits.
 std::string RatioText(double ratio);
 

@@ -42,6 +42,7 @@ struct RefitOptions {
   std::chrono::milliseconds fit_time = std::chrono::minutes(10);  ///< Longest fit; a longer one fails with kTryAgain.
   const std::atomic<bool>* stop = nullptr;  ///< If true, the refit ends soon; runs in progress are left for the next.
   std::string group_by;                     ///< As in SummaryOptions; checked before the fits, which may take hours.
+  std::string flags;                        ///< As in StoreMeta.
   std::function<void(const RefitCounts&)> progress;  ///< Called after every run, from any thread, one at a time.
   std::function<Result<void>()> committed;  ///< Called after commits, about once a second; errors end the refit.
 };

@@ -50,6 +50,9 @@ struct Outlier {
   double z = 0;
 };
 
+/// The z of every run (Outlier), whether it fits its group or not; NaN if its group has no scale.
+std::vector<double> DistancesFromGroup(const RunValues& values);
+
 /// Finds runs whose z exceeds a limit, the largest z first. The largest of K normal values exceeds this limit in one of
 /// twenty batches (Šidák). A group of fewer than five runs has no outliers.
 std::vector<Outlier> FindOutliers(const RunValues& values);

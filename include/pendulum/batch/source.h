@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ struct Source {
 
   /// Manifests and exports of refit_pendulums in these folders, which are left out, too.
   std::vector<std::string> lists = {};
+
+  /// The folder that the paths of entries are relative to; std::nullopt: their files are in a packed file.
+  std::optional<std::string> folder = {};
 };
 
 /// Limit for a recording, which is in memory while it is fitted.

@@ -62,6 +62,9 @@ struct StoreMeta {
   std::optional<Shard> shard;  ///< std::nullopt: the whole manifest.
   std::int64_t runs = 0;       ///< Runs of the manifest, over all shards.
   bool complete = false;
+  std::string began, ended;  ///< Of the last refit, RFC 3339, UTC; empty: not known, or not ended.
+  std::string flags;   ///< A JSON object: the flags of fit_pendulum that the last refit was given; empty: not known.
+  std::string folder;  ///< The paths of runs are relative to it, from where the last refit was started.
 
   /// A refit was stopped before its end, or is running.
   bool is_interrupted() const { return !complete && !manifest_sha256.empty(); }
@@ -163,6 +166,13 @@ class Store {
 
   /// Reads all pages and indices. kDataLoss: they are inconsistent.
   Result<void> Check();
+
+  /// The clock for the times in the store, instead of the current time in UTC.
+  void SetClock(std::function<std::string()> now);
+
+  /// Stores what a command needs that fits one run of the batch again (StoreMeta::flags, folder). The next Commit makes
+  /// it durable.
+  Result<void> KeepCommand(const std::string& flags, const std::string& folder);
 
   /// When `stop` is true, commits wait two seconds for readers instead of ten minutes. `stop` must outlive the store.
   void ShortenWaitsOnStop(const std::atomic<bool>* stop);

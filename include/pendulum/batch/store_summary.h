@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -33,6 +34,25 @@ struct RunCounts {
   std::vector<Run> missing_runs, refused_runs, stale_runs;  ///< At most ten each, in the order of the manifest.
 };
 
+/// What the last refit did to the runs of its manifest.
+struct RefitNews {
+  std::string began, ended;           ///< RFC 3339, UTC; empty: not known, or not ended.
+  std::int64_t fresh = 0, again = 0;  ///< Runs that it tried for the first time, and again.
+  std::string text = {};              ///< In a sentence; empty: not known.
+};
+
+/// A run in the list of runs.
+struct ListedRun {
+  std::string id;
+  std::string level;    ///< good, caution, bad or waiting.
+  std::string state;    ///< "fitted", "refused", ...
+  std::string text;     ///< Why it is not simply fitted, or how well the law describes it; may be empty.
+  std::string law;      ///< The recommended or only law; empty: none.
+  std::string fitted;   ///< When its rows were stored, RFC 3339, UTC; empty: not known.
+  std::string news;     ///< new or again, if the last refit tried it; otherwise empty.
+  std::string command;  ///< Makes the report of the run; empty: not known.
+};
+
 /// Which runs were taken for repeats of one pendulum.
 struct Grouping {
   std::string by;          ///< column, true_values, rig, folder or all.
@@ -49,7 +69,7 @@ struct Grouping {
 struct DisagreeingRun {
   std::string id, parameter;
   double estimate = 0, others = 0;  ///< Its value and the weighted mean of the others, in the parameter's unit.
-  double z = 0;                     ///< Their difference over its standard error.
+  double z = std::numeric_limits<double>::quiet_NaN();  ///< As of an Outlier; NaN: not known.
 };
 
 /// The test of the runs of one pendulum for agreement in all parameters together (Agreement).
@@ -83,6 +103,7 @@ struct TrendSummary {
   Trend trend;
   std::string column;
   bool is_of_dates = false;  ///< The abscissa is in days since 1970-01-01.
+  bool is_moving = false;    ///< p is below one in a hundred.
   std::string slope, text;   ///< slope: "1.2e-06 ± 3e-07 kg m^2 per day".
   struct Point {
     double x = 0, y = 0, std_error = 0;  ///< std_error: NaN if there is none.
@@ -129,6 +150,9 @@ struct StoreSummary {
   std::string main_law = {};  ///< The law of the conclusions; empty if there is none.
   std::vector<ErrorVerdict> verdicts = {};
   RunAgreement agreement = {};
+  std::string disagreement = {};  ///< The recordings that disagree with their repeats, in a sentence; may be empty.
+  RefitNews news = {};
+  std::vector<ListedRun> runs = {};  ///< Those that need a look first; not all if there are many.
   StoreFacts store = {};
   std::string trend_by = {};  ///< The column of trends; empty: the order of the runs.
   StoreOverview overview = {};

@@ -16,6 +16,7 @@ struct SummaryOptions {
                          ///< simulated recordings, rig files), else folders or all runs.
   std::string trend_by;  ///< A manifest column of numbers or ISO 8601 dates; empty: the position in the manifest.
   bool main_law_only = false;      ///< Only the parameters of the main law.
+  bool without_runs = false;       ///< Without the list of runs, which reads the results of some hundreds.
   bool without_agreement = false;  ///< Without the test of a joint fit, which reads the results of all runs.
 };
 

@@ -86,6 +86,9 @@ struct RunFlag {
 /// openapi.json and the form of the service are made from this table.
 const std::vector<RunFlag>& RunFlagTable();
 
+/// The flags that differ from their defaults, by name: texts, or true.
+nlohmann::ordered_json GivenFlags(const RunFlags& flags);
+
 /// The error for a flag that cannot be combined with --closed_form_only.
 tl::unexpected<Status> NeedsFitError(std::string_view flag);
 
