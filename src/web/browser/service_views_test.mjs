@@ -287,6 +287,9 @@ test('several recordings are fitted with visible progress, and each failed one g
     .replaceAll('--sample_rate_hz', '“Samples per second”');
   assert.doesNotMatch(reason, /--/);
   assert.ok((await rows.nth(5).textContent()).includes(reason));
+  assert.deepEqual(await page.locator('.failed li').allTextContents(), [`letter.txt: ${reason}`]);
+  assert.equal(await page.locator('.failed a').getAttribute('href'), `/fits/${letter.id}`);
+  assert.match(await page.locator('main > .quiet').first().textContent(), /^Sent \d{4}-\d\d-\d\d \d\d:\d\d, your local time\.$/);
   const { fits: items } = await service.json(`/v1/fits?batch=${id}`);
   const { parameters } = items
     .find((item) => item.name === 'run_3.csv')

@@ -34,16 +34,18 @@ test('the page has all sections in order, with their plots', async (t) => {
   const page = await openSummary(t, makeSummary());
   assert.deepEqual(await ids(page), [
     'verdict',
+    'failures',
+    'moved',
+    'runs',
     'models',
     'parameters',
     'distribution',
     'repeatability',
     'outliers',
     'trend',
-    'failures',
     'provenance',
   ]);
-  assert.equal(await page.locator('nav a').count(), 9);
+  assert.equal(await page.locator('nav a').count(), 11);
   for (const plot of ['#distribution .plot', kTrend]) assert.ok((await ink(page, plot)) > 3000, plot);
   assert.equal((await page.locator('#repeatability .forest svg').count()) > 0, true);
   assert.equal(await page.title(), 'batch.sqlite – summary of runs');
@@ -71,10 +73,12 @@ test('values on the page equal the values in the JSON', async (t) => {
   const outlier = await page.locator('#outliers tbody tr').allTextContents();
   assert.equal(outlier.length, 1);
   assert.ok(outlier[0].startsWith(`batch_odd.csvrig_a${inertia.outliers[0].text}`), outlier[0]);
-  const { z } = summary.agreement.rows.flatMap(({ outliers }) => outliers)[0];
-  const found = `under coulomb: batch_odd.csv (moment of inertia, ${z.toFixed(1)} standard errors).`;
+  const { z_text: z } = inertia.outliers[0];
   const verdict = await page.locator('#verdict').textContent();
-  assert.ok(verdict.includes(`1 recording disagrees with the others`) && verdict.includes(found), verdict);
+  // 0.0795 among repeats of 0.079: 0.63 % more.
+  const found = new RegExp(`One recording disagrees with .*: batch_odd\\.csv \\(inertia 0\\.079[45]\\d*, the others 0\\.07[89]\\d*: 0\\.6\\d % more, z ${z}\\)`);
+  assert.match(verdict, found);
+  assert.ok(outlier[0].endsWith(z), outlier[0]);
   assert.ok((await page.locator('#provenance').textContent()).includes(summary.store.manifest_sha256));
   assert.match(await page.locator('#verdict .warnings').textContent(), /12 runs is neither a number nor a date/);
   const [first] = inertia.repeatability.rows;
@@ -185,7 +189,7 @@ test('three runs', async (t) => {
 
 test('failures only', async (t) => {
   const page = await openSummary(t, makeFailures());
-  assert.deepEqual(await ids(page), ['verdict', 'models', 'parameters', 'failures', 'provenance']);
+  assert.deepEqual(await ids(page), ['verdict', 'failures', 'moved', 'runs', 'models', 'parameters', 'provenance']);
   assert.match(
     await page.locator('.banner.bad').textContent(),
     /0 of 40 recordings fitted; 38 missing, 2 refused: no fit converged.*Most often \(38 fits\): there is no such file/,
@@ -193,6 +197,65 @@ test('failures only', async (t) => {
   await page.locator('#failures summary').click();
   await page.waitForSelector('#failures details .id');
   assert.equal(await page.locator('#failures details .id').count(), 10);
+});
+
+test('times are those of the reader, with the date in ISO order', async (t) => {
+  const content = makeTiny();
+  Object.assign(content.summary.refit, { began: '2026-11-30T18:30:00Z', ended: '2026-11-30T19:05:59Z' });
+  content.summary.runs[0].fitted = '2026-11-30T18:31:00Z';
+  const page = await openSummary(t, content, { context: { timezoneId: 'Asia/Kolkata' } }); // UTC + 5 h 30 min
+  assert.match(await page.locator('#verdict').textContent(), /began 2026-12-01 00:00, ended 2026-12-01 00:35/);
+  assert.match(await page.locator('#runs tbody tr').first().textContent(), /2026-12-01 00:01/);
+});
+
+test('the page says what is new, what failed and what moved', async (t) => {
+  const content = makeSummary();
+  const { summary } = content;
+  assert.match(summary.refit.text, /^All 73 recordings are new\.$/);
+  summary.parameters.find(({ model, name }) => model === 'coulomb' && name === 'inertia').trend.is_moving = true;
+  const page = await openSummary(t, content);
+  assert.ok((await page.locator('#verdict').textContent()).includes(summary.refit.text));
+  assert.match(await page.locator('#moved').textContent(), /moment of inertia: /);
+  const rows = page.locator('#runs tbody tr');
+  assert.equal(await rows.count(), 12);
+  assert.match(await rows.first().textContent(), /^(missing|still)_\d.csv(missing|refused)/);
+  await page.getByRole('button', { name: 'Show all 73 recordings' }).click();
+  assert.equal(await rows.count(), 73);
+  assert.match(await rows.nth(12).textContent(), /^batch_odd\.csvdisagrees with the othersinertia 0\.079[45]/);
+  assert.equal(await rows.filter({ hasText: /^missing_/ }).first().locator('button').count(), 0);
+});
+
+test('one click copies the command that makes the report of a recording', async (t) => {
+  const page = await openSummary(t, makeTiny(), { context: { permissions: ['clipboard-read', 'clipboard-write'] } });
+  await page.getByRole('button', { name: 'Command for the report of tiny_run_002.csv' }).click();
+  await page.getByText('Copied: paste it in a terminal.').waitFor();
+  const copied = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(copied, /^fit_pendulum tiny_run_002\.csv --rig '?[^ ]*recorded_rig\.json'? --model coulomb --report tiny_run_002\.html$/);
+  assert.equal(await page.locator('.command:visible').textContent(), copied);
+});
+
+test('a verdict with doubts is not followed by the words that there are no warnings', async (t) => {
+  const content = makeTiny();
+  const good = await openSummary(t, content);
+  assert.match(await good.locator('#verdict').textContent(), /No warnings\./);
+  content.summary.verdicts[0].level = 'caution';
+  const doubtful = await openSummary(t, content);
+  assert.doesNotMatch(await doubtful.locator('#verdict').textContent(), /No warnings/);
+});
+
+test('all values of the parameters can be read on a phone', async (t) => {
+  const page = await openSummary(t, makeSummary(), { context: { viewport: { width: 390, height: 844 } } });
+  await page.getByRole('button', { name: /^Show \d+ derived quantities$/ }).click();
+  const { summary } = makeSummary();
+  const rows = page.locator('#parameters tbody tr');
+  assert.equal(await rows.count(), summary.parameters.filter(({ model }) => model === 'coulomb').length);
+  for (const row of await rows.all()) assert.equal(await row.isVisible(), true);
+  const [hidden, outside] = await page.locator('#parameters .scroll').evaluate((box) => [
+    box.scrollHeight - box.clientHeight,
+    [...box.querySelectorAll('td')].filter((cell) => cell.getBoundingClientRect().right > window.innerWidth).length,
+  ]);
+  assert.deepEqual([hidden, outside], [0, 0]);
+  await assertAccessible(page);
 });
 
 test('100 parameters of 2000 points are drawn, one after another', { timeout: 600_000 }, async (t) => {

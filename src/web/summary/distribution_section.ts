@@ -100,7 +100,7 @@ function numbers({ texts, unit }: ParameterSummary): HTMLElement {
     ['mean', withUnitOf(texts.mean, unit)],
     ['middle half', between(texts.lower_quartile, texts.upper_quartile)],
     ['all', between(texts.minimum, texts.maximum)],
-    ['standard deviation over all runs', withUnitOf(texts.std_dev, unit)],
+    ['standard deviation over all runs', texts.std_dev === '-' ? 'one run has none' : withUnitOf(texts.std_dev, unit)],
     ['quoted error, median', withUnitOf(texts.median_std_error, unit)],
   ];
   return facts(rows);
@@ -114,6 +114,10 @@ export function distributionSection(one: ParameterSummary): HTMLElement {
     numbers(one),
     bars && bars.counts.length > 0 && bars.to > bars.from
       ? histogramPart(one, bars)
-      : absent('The values do not vary, so they have no distribution to draw.'),
+      : absent(
+          one.runs === 1
+            ? 'One run has no spread.'
+            : 'The values do not vary, so they have no distribution to draw.',
+        ),
   );
 }

@@ -3,29 +3,15 @@
 
 import { text } from '../shared/dom';
 import { identifier, visible } from '../shared/names';
-import { numberText } from '../shared/prose';
-import { fixed } from '../shared/rounding';
+import { numberText, sentence } from '../shared/prose';
 import { section } from '../shared/section';
 import { table, type Cell, type Column } from '../shared/table';
-import { unitText, wordsOf } from '../shared/units';
+import { unitText } from '../shared/units';
 import type { ParameterSummary, Summary } from './types';
 import { countText, counted } from './words';
 
-const kNamed = 10;
-
-/** The recordings that disagree with the others of their pendulum in all parameters together, as a joint fit finds. */
-export function disagreementText({ agreement }: Summary): string {
-  if (!agreement) return '';
-  const found = agreement.rows.flatMap(({ outliers }) => outliers);
-  if (found.length === 0) return '';
-  const named = found.slice(0, kNamed).map(({ id, parameter, z }) => {
-    const distance = z === null ? '' : `, ${fixed(Math.abs(z), 1)} standard errors`;
-    return `${visible(id)} (${wordsOf(parameter)}${distance})`;
-  });
-  const more = found.length > kNamed ? `, and ${countText(found.length - kNamed)} more` : '';
-  const verb = found.length === 1 ? 'recording disagrees' : 'recordings disagree';
-  return `${countText(found.length)} ${verb} with the others of the same pendulum in all parameters together, under ${agreement.model}: ${named.join(', ')}${more}.`;
-}
+/** The recordings that disagree with the others of their pendulum, as the program says it. */
+export const disagreementText = ({ disagreement }: Summary): string => sentence(visible(disagreement ?? ''));
 
 export function outliersSection(one: ParameterSummary, summary: Summary): HTMLElement {
   const title = 'Outliers';
@@ -46,7 +32,7 @@ export function outliersSection(one: ParameterSummary, summary: Summary): HTMLEl
     identifier(run.id),
     ...(grouped ? [run.group === null ? '–' : identifier(run.group)] : []),
     numberText(run.text),
-    run.z === null ? '–' : fixed(run.z, 1),
+    numberText(run.z_text),
   ]);
   const count =
     total > outliers.length ? `The ${outliers.length} furthest of ${countText(total)} runs` : counted(total, 'run');
@@ -57,6 +43,9 @@ export function outliersSection(one: ParameterSummary, summary: Summary): HTMLEl
     title,
     joint,
     box,
-    text('z: how many standard errors a run is from the others of its group.', 'quiet'),
+    text(
+      'z: the distance of a run from the median of its group, over the scatter of the group or the standard error of the run, whichever is larger.',
+      'quiet',
+    ),
   );
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Table of all parameters of the selected model, in which one can be selected. */
 
-import { el, text, type Child } from '../shared/dom';
+import { button, el, text, type Child } from '../shared/dom';
 import { numberText } from '../shared/prose';
 import { absent, section } from '../shared/section';
 import { select } from '../shared/select';
@@ -47,6 +47,19 @@ function mark(box: HTMLElement, index: number): void {
   box.querySelectorAll('tbody tr').forEach((row, i) => row.classList.toggle('marked', i === index));
 }
 
+/** Hides the rows of derived quantities until they are asked for. */
+function foldDerived(box: HTMLElement, all: ParameterSummary[]): void {
+  const rows = [...box.querySelectorAll<HTMLElement>('tbody tr')].filter((_row, i) => all[i].derived);
+  if (rows.length === 0 || rows.length === all.length) return;
+  for (const row of rows) row.hidden = true;
+  const show = button(`Show ${countText(rows.length)} derived quantities`, () => {
+    for (const row of rows) row.hidden = false;
+    show.remove();
+    box.focus();
+  });
+  box.append(show);
+}
+
 function overview(view: View, all: ParameterSummary[]): HTMLElement {
   const number = 'number' as const;
   const columns: Column[] = [
@@ -61,6 +74,7 @@ function overview(view: View, all: ParameterSummary[]): HTMLElement {
   ];
   const box = table(`Parameters of ${shownModel(view)?.model}, over its converged fits`, columns, all.map(row));
   box.classList.add('tall', 'names');
+  foldDerived(box, all);
   mark(box, all.indexOf(shownParameter(view) as ParameterSummary));
   return box;
 }

@@ -8,10 +8,12 @@ import { wordsOf } from '../shared/units';
 import { distributionSection } from './distribution_section';
 import { failuresSection } from './failures_section';
 import { modelsSection } from './models_section';
+import { movedSection } from './moved_section';
 import { outliersSection } from './outliers_section';
 import { parametersSection } from './parameters_section';
 import { provenanceSection } from './provenance_section';
 import { repeatabilitySection } from './repeatability_section';
+import { runsSection } from './runs_section';
 import { trendSection } from './trend_section';
 import type { Summary } from './types';
 import { verdictSection } from './verdict_section';
@@ -39,7 +41,8 @@ function sections(view: View, changed: () => void): HTMLElement[] {
     refill(details, detailSections(view));
     changed();
   });
-  return [verdictSection(view), modelsSection(view), overview, details, failuresSection(view), provenanceSection(view)];
+  const parts = [verdictSection(view), failuresSection(view), movedSection(view), runsSection(view.summary)];
+  return [...parts, modelsSection(view), overview, details, provenanceSection(view)].filter((part) => part !== null);
 }
 
 function content(view: View): Content {

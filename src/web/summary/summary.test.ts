@@ -220,14 +220,9 @@ describe('the headline', () => {
     expect(said).toMatchObject({ level: 'caution', sentence: text });
   });
 
-  test('names the recordings that disagree in all parameters together', () => {
-    const row = { group: null, runs: 4, statistic: 600, dof: 9, p: 0 };
-    const outlier = { id: 'd.csv', parameter: 'inertia', estimate: 0.0814, others: 0.079, z: -25.24 };
-    const agreement = { model: 'coulomb', groups: 1, disagreeing: 1, rows: [{ ...row, outliers: [outlier] }] };
-    expect(disagreementText(summary([], [], { agreement }))).toBe(
-      '1 recording disagrees with the others of the same pendulum in all parameters together, under coulomb: ' +
-        'd.csv (moment of inertia, 25.2 standard errors).',
-    );
+  test('says which recordings disagree as the program does', () => {
+    const disagreement = 'One recording disagrees: d.csv (inertia 0.081402, the others 0.078999: 3 % more, z 17.8).';
+    expect(disagreementText(summary([], [], { disagreement }))).toBe(disagreement);
     expect(disagreementText(summary([], []))).toBe('');
   });
 

@@ -12,6 +12,11 @@ export interface Summary {
   main_model: string | null;
   verdicts: ModelVerdict[];
   agreement: Agreement | null;
+  /** The recordings that disagree with their repeats, in a sentence. */
+  disagreement?: string | null;
+  refit?: Refit;
+  /** Those that need a look first; at most 500. */
+  runs?: ListedRun[];
   store: Store;
   /** What tells the pendulums apart, such as a column of the manifest; null: all runs are of one. */
   group_by: string | null;
@@ -78,6 +83,29 @@ export interface AgreementRow {
   dof: number;
   p: Num;
   outliers: { id: string; parameter: string; estimate: Num; others: Num; z: Num }[];
+}
+
+/** The last refit; times are instants, null: not known. text: what is new, in a sentence. */
+export interface Refit {
+  began: string | null;
+  ended: string | null;
+  new: number;
+  again: number;
+  text: string | null;
+}
+
+export interface ListedRun {
+  id: string;
+  level: 'good' | 'caution' | 'bad' | 'waiting';
+  /** "fitted", "refused", ... */
+  state: string;
+  text: string | null;
+  model: string | null;
+  fitted: string | null;
+  /** What the last refit did to it. */
+  news: 'new' | 'again' | null;
+  /** Writes its report; null: not known. */
+  command: string | null;
 }
 
 export interface Store {
@@ -199,6 +227,7 @@ export interface Outlier {
   /** Value ± standard error. */
   text: string;
   z: Num;
+  z_text?: string;
 }
 
 export interface Trend {
@@ -208,6 +237,8 @@ export interface Trend {
   std_error: Num;
   p: Num;
   text: string;
+  /** It is not by chance. */
+  is_moving?: boolean;
   /** slope: with its error and unit. */
   texts: { slope: string; p: string };
   points: TrendRun[];

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /** The verdict: number of recordings, what was taken for one pendulum, and whether the errors agree with the scatter. */
 
-import { banner, warnings } from '../shared/banner';
-import { el, text } from '../shared/dom';
+import { banner, warnings, type Level } from '../shared/banner';
+import { el, text, type Child } from '../shared/dom';
 import { keyFigure } from '../shared/key_figure';
-import { numberText } from '../shared/prose';
+import { localTime } from '../shared/local_time';
+import { numberText, sentence } from '../shared/prose';
 import { section } from '../shared/section';
 import { wordsOf } from '../shared/units';
 import { headline, judgedOf, worst } from './headline';
 import { disagreementText } from './outliers_section';
+import type { Summary } from './types';
 import { parametersOf, shownModel, type View } from './view';
 import { countText, shareText } from './words';
 
@@ -44,14 +46,31 @@ function figures(view: View): HTMLElement {
   return box;
 }
 
+/** When the batch was fitted, and what was new. */
+function refitParts({ refit }: Summary): Child[] {
+  if (!refit || refit.began === null) return [];
+  const ended: Child[] = refit.ended === null ? [', not ended'] : [', ended ', localTime(refit.ended)];
+  return [
+    el('p', { class: 'quiet when' }, 'Last refit: began ', localTime(refit.began), ...ended, ', your local time.'),
+    refit.text !== null && text(sentence(refit.text)),
+  ];
+}
+
+/** Whether it may be said that there is no warning. */
+const isFine = ({ headline: counts, disagreement, warnings: list }: Summary, level: Level): boolean =>
+  list.length > 0 || (level === 'good' && counts.fitted === counts.runs && !disagreement);
+
 export function verdictSection(view: View): HTMLElement {
-  const disagreement = disagreementText(view.summary);
+  const { summary } = view;
+  const disagreement = disagreementText(summary);
+  const top = headline(view);
   return section(
     'verdict',
     'Verdict',
-    banner(headline(view)),
+    banner(top),
+    ...refitParts(summary),
     disagreement !== '' && text(disagreement),
     figures(view),
-    warnings(view.summary),
+    isFine(summary, top.level) && warnings(summary),
   );
 }

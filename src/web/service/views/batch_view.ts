@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A batch: its runs, as they are finished. */
 
-import { button, el, text } from '../../shared/dom';
+import { button, el, text, type Child } from '../../shared/dom';
+import { localTime } from '../../shared/local_time';
+import { typeset } from '../../shared/prose';
 import { confirmed } from '../dialog';
 import { follow } from '../follow';
 import { go } from '../router';
-import { batchPath, comparePath, kMostCompared } from '../routes';
+import { batchPath, comparePath, fitPath, kMostCompared } from '../routes';
 import { selectionBar } from '../selection';
 import { ask, askJson } from '../server/api';
 import type { ServerEvent } from '../server/sse';
 import type { Place, View } from '../shell';
 import type { Batch, BatchProgress, BatchRun, FitItem, FitList } from '../types';
 import { durationWords, pause } from '../waiting';
-import { fitRow, fitTable } from './fit_rows';
+import { fitRow, fitTable, isUnfitted } from './fit_rows';
 import { alertPlace, attempt, showProblem } from './problem_view';
 
 const kMostRows = 500;
@@ -45,15 +47,21 @@ export function timeWords(seconds: number, doneSince: number, left: number): str
   return `${durationWords(seconds)} so far${rest}.`;
 }
 
+/** A recording without a result: a link to its page, and why. */
+const failedItem = ({ id, name, reason }: FitItem): HTMLElement =>
+  el('li', {}, el('a', { href: fitPath(id) }, el('bdi', {}, name || 'recording without a name')), reason !== '' && `: ${typeset(reason)}`);
+
 class BatchView {
   private readonly table = fitTable('Recordings in the order they were sent', false);
   private readonly chosen = selectionBar();
   private readonly bar = el('progress', { 'aria-label': 'Recordings done' });
   private readonly words = text('');
+  private readonly failed = el('ul', { class: 'failed', 'aria-label': 'Recordings that could not be fitted' });
   private readonly problems = alertPlace();
   private readonly connection = text('', 'quiet');
   private readonly rows = new Map<string, HTMLElement>();
   private readonly full = new Set<string>();
+  private readonly told = new Set<string>();
   private readonly time = text('', 'quiet');
   private readonly cancel = button('Cancel', () => void this.stop());
   private readonly began = performance.now();
@@ -68,6 +76,7 @@ class BatchView {
     private readonly batch: Batch,
   ) {
     this.words.setAttribute('role', 'status');
+    this.failed.hidden = true;
     for (const run of batch.fits.slice(0, kMostRows)) this.put(itemOf(run, batch));
   }
 
@@ -78,6 +87,15 @@ class BatchView {
     else if (this.rows.size < kMostRows) this.table.body.append(row);
     else return;
     this.rows.set(item.id, row);
+    this.tellFailure(item);
+  }
+
+  /** Names a recording above the table that could not be fitted. */
+  private tellFailure(item: FitItem): void {
+    if (!isUnfitted(item) || this.told.has(item.id)) return;
+    this.told.add(item.id);
+    this.failed.append(failedItem(item));
+    this.failed.hidden = false;
   }
 
   /** Updates the progress. Events begin with runs that were finished earlier; the displayed count never decreases. */
@@ -171,8 +189,11 @@ class BatchView {
     const { runs } = this.batch;
     const few =
       runs > kMostRows && text(`The first ${kMostRows} are listed here; “Past fits” has all of them.`, 'quiet');
+    const sent: Child[] = ['Sent ', localTime(this.batch.created), ', your local time.'];
     main.append(
+      el('p', { class: 'quiet' }, ...sent),
       this.words,
+      this.failed,
       this.bar,
       this.time,
       this.connection,

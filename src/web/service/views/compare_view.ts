@@ -32,7 +32,7 @@ import {
   wholeRange,
   type Compared,
 } from './compare';
-import { localTime } from './fit_rows';
+import { localTime } from '../../shared/local_time';
 import { valueCell } from './parameter_cells';
 
 const number = 'number' as const;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Fits as rows of a table, which becomes a list of cards on a narrow page. */
 
+import { badge, type State } from '../../shared/badge';
 import { append, el, symbolElement, type Child } from '../../shared/dom';
+import { localTime } from '../../shared/local_time';
 import { mainFit } from '../../shared/main_fit';
 import { numberText, typeset } from '../../shared/prose';
 import { windowText } from '../../shared/rounding';
@@ -35,10 +37,8 @@ function parameterCell(model: ItemModel | null, name: string, label: string): HT
   return cell(label, value, ' ', unit !== '' && el('small', {}, unit));
 }
 
-export type State = 'good' | 'caution' | 'bad' | 'waiting';
-
 /** Whether a run has no result. The exit codes of fits are 0 and 1. */
-const isUnfitted = ({ exit_code: code }: Pick<FitItem, 'exit_code'>): boolean => (code ?? 0) > 1;
+export const isUnfitted = ({ exit_code: code }: Pick<FitItem, 'exit_code'>): boolean => (code ?? 0) > 1;
 
 /** How a fit ended, in words. */
 export function stateOf(item: Pick<FitItem, 'state' | 'exit_code' | 'recommended' | 'models'>): {
@@ -51,19 +51,6 @@ export function stateOf(item: Pick<FitItem, 'state' | 'exit_code' | 'recommended
   if (status === undefined) return { words: 'closed forms', level: 'good' };
   if (status === 'converged') return { words: 'converged', level: 'good' };
   return { words: status.replace(/_/g, ' '), level: status === 'failed' ? 'bad' : 'caution' };
-}
-
-/** A time of the service in the time zone of the browser. */
-export function localTime(instant: string): HTMLElement {
-  const date = new Date(instant);
-  const words = Number.isNaN(date.getTime())
-    ? instant
-    : date.toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
-  return el('time', { datetime: instant }, words);
-}
-
-export function badge(words: string, level: State): HTMLElement {
-  return el('span', { class: `badge ${level}-badge` }, words);
 }
 
 function cell(label: string, ...children: Child[]): HTMLElement {

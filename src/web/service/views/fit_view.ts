@@ -17,7 +17,7 @@ import type { Place, View } from '../shell';
 import type { FitRequest } from '../types';
 import { againSection } from './again_section';
 import { fitActions } from './fit_actions';
-import { localTime } from './fit_rows';
+import { localTime } from '../../shared/local_time';
 import { alertPlace, tellProblem } from './problem_view';
 import { slidersSection } from './sliders_section';
 
