@@ -428,7 +428,8 @@ class Reports(Lab):
                                    "ALTER TABLE quantities DROP COLUMN source_std_error; "
                                    "ALTER TABLE runs DROP COLUMN sources; ALTER TABLE runs DROP COLUMN stale; "
                                    "ALTER TABLE runs DROP COLUMN attempt; ALTER TABLE runs DROP COLUMN place; "
-                                   "ALTER TABLE runs DROP COLUMN sentence; "
+                                   "ALTER TABLE runs DROP COLUMN sentence; ALTER TABLE runs DROP COLUMN fitted; "
+                                   "ALTER TABLE runs DROP COLUMN news; "
                                    "ALTER TABLE requests DROP COLUMN name; PRAGMA user_version = 3; "
                                    "CREATE VIEW results AS SELECT id, fits.* FROM runs JOIN fits USING(run)")
         (self.folder / "a.sqlite").chmod(0o444)

@@ -10,7 +10,7 @@ import { parametersOf, shownModel, type View } from './view';
 export function movedSection(view: View): HTMLElement {
   const title = 'What moved';
   const over = view.summary.trend_by === null ? 'the order of the manifest' : view.summary.trend_by;
-  const known = parametersOf(view).filter(({ trend }) => trend);
+  const known = parametersOf(view).filter(({ derived, trend }) => !derived && trend);
   const moving = known.filter(({ trend }) => trend?.is_moving);
   if (known.length === 0) return section('moved', title, text('There are too few recordings for a trend.'));
   if (moving.length === 0) {
