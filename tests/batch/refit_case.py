@@ -28,9 +28,9 @@ def skip_without(programs):
 
 
 def timeless_rows(connection, table):
-    """The rows of a table without the times of its refits."""
+    """The rows of a table without the times of its refits, and from where they were started."""
     columns = [name for _, name, *_ in connection.execute(f"PRAGMA table_info({table})") if name != "fitted"]
-    where = "WHERE key NOT IN ('began', 'ended')" if table == "meta" else ""
+    where = "WHERE key NOT IN ('began', 'ended', 'folder')" if table == "meta" else ""
     return connection.execute(f"SELECT {', '.join(columns)} FROM {table} {where}")
 
 
