@@ -2,6 +2,7 @@
 #include "service/other_answers.h"
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -68,6 +69,39 @@ ResultOrProblem<void> CheckSimulatedSamples(const SimulationFlags& flags, const 
 
 bool WantsCsv(const HttpRequest& http) {
   return http.Field("Accept").value_or("").find("text/csv") != std::string_view::npos;
+}
+
+bool WantsPage(const HttpRequest& http) {
+  return http.Field("Accept").value_or("").find("text/html") != std::string_view::npos;
+}
+
+/// For browsers: the links of the page to the guide lead here if the guide is not installed.
+HttpResponse NoGuidePage() {
+  constexpr std::string_view kPage = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>The user guide is not installed</title>
+<link rel="stylesheet" href="/app.css">
+</head>
+<body>
+<main class="page service">
+<h1>The user guide is not installed</h1>
+<p>The packages contain the guide. A build from the sources has it only if mkdocs and KaTeX are there.
+Run these commands in the folder of the sources, and start <code>serve_pendulum</code> again, with your other flags:</p>
+<pre><code>scripts/docs
+serve_pendulum --docs build/docs</code></pre>
+<p>The same text, to read without a build, is in the folder <code>src/docs</code>; begin with <code>index.md</code>.</p>
+<p><a href="/">Back to the service</a></p>
+</main>
+</body>
+</html>
+)";
+  HttpResponse response = TextAnswer("text/html; charset=utf-8", std::string(kPage));
+  response.status = 404;
+  return response;
 }
 
 Json PointsJson(const CalibrationTable& table, const CalibrationFit& fit) {
@@ -274,12 +308,15 @@ HttpResponse GetGuide(ServiceState& /*state*/, const Call& /*call*/) {
 
 HttpResponse GetGuideFile(ServiceState& state, const Call& call) {
   const auto file = ReadGuideFile(state.options.docs, call.id);
-  if (!file) return ProblemAnswer(file.error());
+  if (!file) {
+    const bool is_installed = std::filesystem::is_directory(state.options.docs);
+    return !is_installed && WantsPage(call.http) ? NoGuidePage() : ProblemAnswer(file.error());
+  }
   HttpResponse response = PageFile(call, file->type, file->bytes, EntityTagOf(file->bytes));
-  // No script may run: the guide needs none, and the operator may choose any folder.
+  // Its search is a script. No script may send or fetch anything: the operator may choose any folder.
   response.fields.push_back({"Content-Security-Policy",
-                             "default-src 'none'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action "
-                             "'none'; frame-ancestors 'none'"});
+                             "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; base-uri "
+                             "'none'; form-action 'none'; frame-ancestors 'none'"});
   return response;
 }
 

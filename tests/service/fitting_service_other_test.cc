@@ -321,8 +321,8 @@ TEST_F(FittingServiceOtherTest, ServesTheGuide) {
   EXPECT_EQ(page.body, "<p>Guide</p>");
   EXPECT_THAT(FieldOf(page, "Content-Type"), StartsWith("text/html"));
   const std::string policy = FieldOf(page, "Content-Security-Policy");
-  EXPECT_THAT(policy,
-              AllOf(StartsWith("default-src 'none'"), Not(HasSubstr("script-src")), HasSubstr("style-src 'self'")));
+  EXPECT_THAT(policy, AllOf(StartsWith("default-src 'none'"), HasSubstr("script-src 'self'"),
+                            HasSubstr("style-src 'self'"), Not(HasSubstr("connect-src"))));
   EXPECT_EQ(FieldOf(Get("/docs/pictures/report.png"), "Content-Type"), "image/png");
   const HttpResponse again = Ask("GET", "/docs/index.html", {{"If-None-Match", FieldOf(page, "ETag")}});
   EXPECT_EQ(again.status, 304);
@@ -346,6 +346,14 @@ TEST_F(FittingServiceOtherTest, ServesNothingOutsideTheGuide) {
 
 TEST_F(FittingServiceOtherTest, ReportsThatTheGuideIsNotInstalled) {
   EXPECT_THAT(AnswerOf(Get("/docs/index.html")), StartsWith("404 the user guide is not installed"));
+}
+
+TEST_F(FittingServiceOtherTest, TellsABrowserHowToGetTheGuide) {
+  const HttpResponse page = Ask("GET", "/docs/index.html", {{"Accept", "text/html,application/xhtml+xml,*/*;q=0.8"}});
+  EXPECT_EQ(page.status, 404);
+  EXPECT_THAT(FieldOf(page, "Content-Type"), StartsWith("text/html"));
+  EXPECT_THAT(page.body, AllOf(HasSubstr("scripts/docs"), HasSubstr("--docs build/docs"), Not(HasSubstr("<script"))));
+  EXPECT_THAT(FieldOf(page, "Content-Security-Policy"), StartsWith("default-src 'none'"));
 }
 
 // ---- The live recording --------------------------------------------------------------------------------------------

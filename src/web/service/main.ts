@@ -7,6 +7,7 @@ import './views.css';
 import 'uplot/dist/uPlot.min.css';
 
 import { embedded, start } from '../shared/embedded';
+import { guideAt } from '../shared/guide';
 import { wordWith } from '../shared/prose';
 import { inFields, setFlags, type FormFlag } from './flag_words';
 import { missing, startRouter } from './router';
@@ -42,6 +43,7 @@ function viewOf(route: Route): View {
 }
 
 wordWith(inFields);
+guideAt('/docs/');
 start('service', 'page', (root) => {
   setFlags(embedded<FormFlag[]>('flags') ?? []);
   startRouter(root, viewOf);

@@ -2,6 +2,7 @@
 /** The verdict above a page, and the list of warnings. */
 
 import { el } from './dom';
+import { placeInGuide } from './guide';
 import { sentence } from './prose';
 import type { Warning } from './result_types';
 
@@ -31,7 +32,8 @@ type Told = Pick<Warning, 'code' | 'message'>;
 export function warningList(list: Told[]): HTMLElement {
   const items = el('ul', { class: 'warnings' });
   for (const { code, message } of list) {
-    items.append(el('li', {}, el('span', { class: 'code' }, code.replace(/_/g, ' ')), ' ', sentence(message)));
+    const name = el('span', { class: 'code' }, code.replace(/_/g, ' '));
+    items.append(el('li', {}, name, ' ', sentence(message), ' ', placeInGuide(code)));
   }
   return items;
 }

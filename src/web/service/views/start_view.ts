@@ -114,6 +114,8 @@ const asRecording = (file: File): Recording => ({ name: file.name, content: file
 const inWords = (recordings: Recording[]): string =>
   recordings.length === 1 ? recordings[0].name : `${recordings.length} recordings`;
 
+const kLead = 'From a recording of a free swing: how hard the pendulum is to turn, and what slows it down.';
+
 const kTooLarge =
   'This recording is too large for the memory of the browser: after a reload of the page, choose it again.';
 
@@ -372,9 +374,10 @@ class StartView {
     const { rig, models, options } = this.all;
     const part = (id: string, title: string, ...children: Node[]): HTMLElement =>
       el('section', { 'aria-labelledby': id }, el('h2', { id }, title), ...children);
+    const guide = el('a', { href: '/docs' }, 'User guide');
     const paste = new PasteForm((form) => this.takePasted(form));
     this.place.main.append(
-      text('From a recording of a free swing: how hard the pendulum is to turn, and what slows it down.', 'lead'),
+      el('p', { class: 'lead' }, `${kLead} `, guide),
       part('recording', 'The recording', this.zone.element, this.progress, paste.element, this.look.element),
       part('example', 'No recording at hand', text('Try one of these.', 'quiet'), this.examples),
       part('rig-known', 'The pendulum', rig.element),
