@@ -14,7 +14,8 @@ Comments in front of a block change how it is handled:
     <!-- output: COMMAND -->       The lines up to <!-- end --> are the output of COMMAND, such as a table.
 
 In README.md and the lab guide, commands have no filter, and the result of a fit with one law has at most 20 lines of 80
-columns. Relative links must lead to a file of the project.
+columns. Relative links must lead to a file of the project. The tables of warnings in the reference have each code once: the
+guide makes it an anchor, to which reports link.
 """
 import concurrent.futures
 import difflib
@@ -37,6 +38,8 @@ ITEM = re.compile(
 SHORT = [TOP / "README.md", TOP / "datasets/ACTIVITY.md"]
 MOST_LINES, MOST_COLUMNS = 20, 80
 COMMAND = re.compile(r"^\$ .*(?:\n> .*)*", re.MULTILINE)
+WARNINGS = TOP / "include/pendulum/base/warning.h"
+EXPLAINED = TOP / "src/docs/reference.md"
 END = "\x1e"  # between the outputs of two commands
 PORT = "8080"  # of the service in the guide; here any free port stands for it
 TIME = 600  # s
@@ -119,6 +122,16 @@ def broken_links(document, text):
             yield f"the link to {target} leads nowhere"
 
 
+def unexplained(codes, text):
+    """Codes of warnings that are not in the first column of exactly one row of the tables of warnings, and others there."""
+    tables = re.findall(r"^\| code \| meaning \|\n\|---\|---\|\n((?:\|.*\n)+)", text, re.MULTILINE)
+    rows = re.findall(r"^\| ((?:`[a-z_]+`(?:, )?)+) \|", "".join(tables), re.MULTILINE)
+    explained = re.findall(r"`(\w+)`", " ".join(rows))
+    for code in sorted({*codes, *explained}):
+        if (codes.count(code), explained.count(code)) != (1, 1):
+            yield f"the warning {code} is {codes.count(code)} times in {WARNINGS.name}, {explained.count(code)} times in the tables"
+
+
 def long_results(text):
     """What a reader of a short document would need a filter for."""
     for item in ITEM.finditer(text):
@@ -143,6 +156,9 @@ def check(document, bin_dir, update):
     name = str(document.relative_to(TOP))
     faults = [f"{name}: {fault}\n" for fault in broken_links(document, text)]
     faults += [f"{name}: {fault}\n" for fault in (long_results(text) if document in SHORT else ())]
+    if document == EXPLAINED:
+        codes = re.findall(r'WarningKind\{"(\w+)"', WARNINGS.read_text())
+        faults += [f"{name}: {fault}\n" for fault in unexplained(codes, text)]
     try:
         now = executed(text, bin_dir) if document in RUN else text
     except Broken as broken:
@@ -175,6 +191,9 @@ def self_test():
         raise AssertionError(broken)
     assert list(broken_links(TOP / "README.md", "[a](MODEL.md) [b](none.md) [c](https://none.example) `[d](none)`")) == [
         "the link to none.md leads nowhere"]
+    table = "| code | meaning |\n|---|---|\n| `a`, `b_b` | x `d` |\n| `c` | y |\n"
+    assert not list(unexplained(["a", "b_b", "c"], table))
+    assert len(list(unexplained(["a", "d"], table + "\n" + table))) == 4
     line = "x" * MOST_COLUMNS + "\n"
     fits = "```console\n$ fit_pendulum run.csv{}\n[[run.csv]]\n{}```\n"
     for short in (fits.format("", (MOST_LINES - 1) * line), fits.format(" --model all", MOST_LINES * line), "```csv\nx" + line + "```\n"):

@@ -135,6 +135,7 @@ def on_page_content(html, page, config, files):
     html = re.sub(r'<span class="go">&gt; (.*?)</span>', r'<span class="gp">&gt; </span>\1', html)
     numbers = itertools.count(1)
     html = re.sub(rf"<({'|'.join(BLOCKS)})>", lambda found: f'<{found[1]} id="p{next(numbers)}">', html)
+    html = html.replace("<pre ", '<pre tabindex="0" ').replace("<table>", '<table tabindex="0">')  # the keyboard scrolls them
     for name, heading, text in Paragraphs(html).found:
         if text.strip():
             PARAGRAPHS.append({"url": f"{page.file.url}#{name}", "page": page.title, "heading": heading, "text": " ".join(text.split())})
