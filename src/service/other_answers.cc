@@ -2,7 +2,6 @@
 #include "service/other_answers.h"
 
 #include <array>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -309,7 +308,7 @@ HttpResponse GetGuide(ServiceState& /*state*/, const Call& /*call*/) {
 HttpResponse GetGuideFile(ServiceState& state, const Call& call) {
   const auto file = ReadGuideFile(state.options.docs, call.id);
   if (!file) {
-    const bool is_installed = std::filesystem::is_directory(state.options.docs);
+    const bool is_installed = ReadGuideFile(state.options.docs, "index.html").has_value();
     return !is_installed && WantsPage(call.http) ? NoGuidePage() : ProblemAnswer(file.error());
   }
   HttpResponse response = PageFile(call, file->type, file->bytes, EntityTagOf(file->bytes));

@@ -10,10 +10,11 @@ const input = box.querySelector('input');
 const list = box.querySelector('ul');
 const count = box.querySelector('[role=status]');
 
-/** Titles count more than text. null: a word is missing. */
+/** Titles count more than text, words side by side more than apart. null: a word is missing. */
 function score({ page, heading, text }, words) {
   const [title, body] = [`${page} ${heading}`.toLowerCase(), text.toLowerCase()];
-  let sum = 0;
+  const phrase = words.join(' ');
+  let sum = (title.includes(phrase) ? 2 : 0) + (body.includes(phrase) ? 2 * words.length : 0);
   for (const word of words) {
     const [inTitle, inBody] = [title.includes(word), body.includes(word)];
     if (!inTitle && !inBody) return null;
