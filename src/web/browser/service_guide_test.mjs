@@ -76,6 +76,7 @@ test('a warning of a fit links to its row in the guide', async (t) => {
   const id = await service.fit('to_rest.csv', 'model=coulomb', 'textbook_rig.json');
   const page = await openView(t, service, `/fits/${id}`);
   await page.locator('#verdict summary', { hasText: 'Explanations' }).click();
+  await page.locator('#warnings a', { hasText: 'Guide: Reference, rig_exact' }).waitFor();
   await page.locator('#verdict a', { hasText: 'Guide: Reference, another_minimum' }).click();
   await page.waitForURL(/\/docs\/reference\.html#another_minimum$/);
   assert.equal(await page.locator(':target').textContent(), 'another_minimum');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** Heading and sections of a report, with or without the series. */
 
+import { placesInGuide } from '../shared/guide';
 import { fileName } from '../shared/names';
 import type { Content } from '../shared/page';
 import { inList } from '../shared/prose';
@@ -9,7 +10,7 @@ import { agreementSection } from './joint/agreement_section';
 import { oneRecordingPart } from './joint/one_recording';
 import { overlaySection } from './joint/overlay_section';
 import { recordingsSection } from './joint/recordings_section';
-import { isSeveral, recordingFile, type Report } from './report';
+import { isSeveral, recordingFile, shownFit, warningsOf, type Report } from './report';
 import { comparisonSection } from './sections/comparison_section';
 import { constancySection } from './sections/constancy_section';
 import { correlationSection } from './sections/correlation_section';
@@ -78,6 +79,10 @@ function titleOf(report: Report, name: string | undefined): Pick<Content, 'title
   return { title, heading: title, facts };
 }
 
+/** Codes of the warnings of the law that is shown. */
+const codesOf = (report: Report): string[] =>
+  warningsOf(report.result, shownFit(report)?.model ?? '').map(({ code }) => code);
+
 /** The report. `name` is its heading, by default the name of the file. */
 export function reportContent(report: Report, name?: string): Content {
   const { fits, comparison } = report.result;
@@ -93,7 +98,7 @@ export function reportContent(report: Report, name?: string): Content {
       const made = [
         verdictSection(report),
         ...own(report, changed),
-        toldPart(report, 'warnings', 'Warnings'),
+        toldPart(report, 'warnings', 'Warnings', [placesInGuide(codesOf(report))]),
         ...otherParts(report),
         rigSection(report),
         provenanceSection(report),

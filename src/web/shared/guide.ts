@@ -17,3 +17,7 @@ export function placeInGuide(code: string): HTMLElement {
   const place = folder === null ? words : el('a', { href: `${folder}reference.html#${code}` }, words);
   return el('small', { class: 'quiet' }, place);
 }
+
+/** The places of several warnings; null if there are none. */
+export const placesInGuide = (codes: string[]): HTMLElement | null =>
+  codes.length === 0 ? null : el('p', {}, ...[...new Set(codes)].flatMap((code) => [placeInGuide(code), ' ']));
