@@ -79,6 +79,9 @@ void SetWhole(JointFit& fit) {
     std::ranges::copy_if(first.derived, std::back_inserter(whole.derived),
                          [](const DerivedQuantity& quantity) { return !quantity.is_of_recording; });
   }
+  for (DerivedQuantity& quantity : whole.derived) {
+    if (quantity.gradient.size() > 0) quantity.gradient = Eigen::VectorXd(quantity.gradient(rows));
+  }
   whole.interval_method = first.interval_method;
   whole.std_error_method = first.std_error_method;
   whole.noise = RepresentativeNoise(fit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pendulum/fitting/fit/fit_jointly.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -64,6 +65,18 @@ TEST(FitJointly, RecoversTheTruthFromNoiseFreeRecordingsOfDifferentKinds) {
   ExpectTruth(fit.runs[0], first, 1e-7);
   ExpectTruth(fit.runs[1], second, 1e-7);
   ExpectTruth(fit.runs[2], third, 1e-7);
+}
+
+TEST(FitJointly, DerivesTheWholesQuantitiesFromItsSharedParametersAlone) {
+  const JointFit fit = FitAllJointly(NoiseFreeRecordings(), RigOptions());
+  const auto ratio =
+      std::ranges::find(fit.whole.derived, std::string_view("gravity_over_inertia"), &DerivedQuantity::name);
+  ASSERT_NE(ratio, fit.whole.derived.end());
+  // d(G/I)/dI for the inertia in units of G.
+  ASSERT_EQ(ratio->gradient.size(), 3);
+  EXPECT_NEAR(ratio->gradient[0], -ratio->estimate * ratio->estimate, 1e-9 * ratio->estimate * ratio->estimate);
+  EXPECT_EQ(ratio->gradient[1], 0);
+  EXPECT_EQ(ratio->gradient[2], 0);
 }
 
 TEST(FitJointly, IsWithinFourStandardErrorsForNoisyRecordings) {

@@ -23,7 +23,7 @@ struct DerivedQuantity {
   std::optional<double> lower95 = std::nullopt, upper95 = std::nullopt;
   SystematicErrors systematic = {};
   ParameterRange range = {0, kUnbounded};  ///< Its possible values.
-  Eigen::VectorXd gradient = {};           ///< P, for parameters in units of the restoring torque G; or empty.
+  Eigen::VectorXd gradient = {};           ///< P, for its report's parameters in units of the torque G; or empty.
   bool is_of_recording = false;            ///< It depends on the recorded motion, not on the pendulum alone.
 };
 
