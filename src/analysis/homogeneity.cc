@@ -14,6 +14,7 @@
 #include "pendulum/analysis/part_fit.h"
 #include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/base/distributions.h"
+#include "pendulum/model/parameter.h"
 
 namespace pendulum {
 namespace {
@@ -196,10 +197,18 @@ std::string NotTestedReason(const FitReport& example, const std::vector<std::str
 
 bool AmplitudeDependence::explains() const { return p < Homogeneity::kDisagree && rest_p >= Homogeneity::kDisagree; }
 
+double Homogeneity::ScatterOfRigs() const {
+  constexpr double kOneRig = 0.05;
+  const auto inertia = std::ranges::find(parameters, kInertia.name, &SharedParameter::name);
+  if (agrees() || inertia == parameters.end()) return 0;
+  const double share = inertia->scatter.between / std::abs(inertia->scatter.mean);
+  return share > kOneRig ? share : 0;
+}
+
 bool Homogeneity::is_amplitude() const {
   bool some = false;
   for (const SharedParameter& parameter : parameters) {
-    if (parameter.p >= kDisagree) continue;
+    if (parameter.agrees()) continue;
     const auto own = std::ranges::find(amplitude_dependence, parameter.name, &AmplitudeDependence::name);
     if (own == amplitude_dependence.end() || !own->explains()) return false;
     some = true;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "pendulum/base/format.h"
-#include "pendulum/model/parameter.h"
 
 namespace pendulum {
 namespace {
@@ -17,7 +16,7 @@ std::string PercentText(double share) {
 
 bool IsAnyParameter(const SharedParameter& /*parameter*/) { return true; }
 
-bool Differs(const SharedParameter& parameter) { return parameter.p < Homogeneity::kDisagree; }
+bool Differs(const SharedParameter& parameter) { return !parameter.agrees(); }
 
 std::string NamesOf(const Homogeneity& result, bool (*is_included)(const SharedParameter&)) {
   std::vector<std::string> names;
@@ -114,15 +113,6 @@ std::string DescribeAmplitude(const Homogeneity& result) {
   return text.empty() ? text : text + "; another law may explain that (--models all)";
 }
 
-/// Relative standard deviation of inertia if the recordings cannot come from one rig; otherwise 0.
-double ScatterOfDifferentRigs(const Homogeneity& result) {
-  constexpr double kOneRig = 0.05;
-  const auto inertia = std::ranges::find(result.parameters, kInertia.name, &SharedParameter::name);
-  if (inertia == result.parameters.end()) return 0;
-  const double share = inertia->scatter.between / std::abs(inertia->scatter.mean);
-  return share > kOneRig ? share : 0;
-}
-
 /// Names the parameter with the largest scatter relative to its errors. Adds advice unless another law was already
 /// recommended.
 std::string DescribeScatter(const Homogeneity& result, bool recommends_law) {
@@ -158,7 +148,7 @@ std::string DescribeHomogeneity(const Homogeneity& result, const std::vector<Run
                                           "the differences (--models all)"
                                     : "";
   if (!result.disagreeing.empty()) return text + DescribeOutliers(result, runs, lacks_fit) + end;
-  if (const double share = ScatterOfDifferentRigs(result); share > 0) {
+  if (const double share = result.ScatterOfRigs(); share > 0) {
     return text + "inertia differs by " + PercentText(share) +
            " (standard deviation): the recordings are of different rigs, or of one rig at different lengths";
   }

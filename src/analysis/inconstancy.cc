@@ -193,7 +193,7 @@ Change CommonChange(std::string_view name, const std::vector<RunAlone>& runs, co
 /// cannot show a change within them, but their differences can.
 double ChangeBetweenRuns(std::string_view name, const std::vector<SharedParameter>& between) {
   const auto shared = std::ranges::find(between, name, &SharedParameter::name);
-  if (shared == between.end() || !(shared->p < Homogeneity::kDisagree)) return 0;
+  if (shared == between.end() || shared->agrees()) return 0;
   return std::isfinite(shared->scatter.between) ? shared->scatter.between : 0;
 }
 

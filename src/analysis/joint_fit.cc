@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "pendulum/analysis/inconstancy.h"
@@ -48,17 +49,38 @@ std::vector<RunAlone> FitsAlone(const std::vector<FittedRecording>& recordings, 
   return alone;
 }
 
-/// If the recordings disagree, adds this to the reason of a fit that did not converge, and a warning otherwise. Both
-/// are short, because the homogeneity's verdict is shown beside them.
-void SetVerdict(const Homogeneity& homogeneity, FitReport& whole) {
+/// Whether a parameter differs between recordings by more than its errors from all other sources. Its total error
+/// contains the difference.
+bool ExceedsOtherErrors(const SharedParameter& between, const FitReport& whole) {
+  const ParameterEstimate* const parameter = whole.Find(between.name);
+  const auto total = parameter == nullptr ? std::nullopt : TotalStdError(parameter->std_error, parameter->systematic);
+  if (!total) return true;
+  const double difference = parameter->systematic.Of(ErrorSource::kInconstancy);
+  return 2 * difference * difference > *total * *total;
+}
+
+/// Judges a disagreement beside the errors of the joint fit. Warns of estimates that mix rigs, and of a disagreement of
+/// all parameters together, which the total errors do not contain as they do that of a single parameter.
+void SetVerdict(Homogeneity& homogeneity, FitReport& whole) {
   if (homogeneity.agrees()) return;
+  const bool is_only_joint = std::ranges::all_of(homogeneity.parameters, &SharedParameter::agrees);
+  const bool exceeds = is_only_joint || std::ranges::any_of(homogeneity.parameters, [&](const SharedParameter& one) {
+                         return !one.agrees() && ExceedsOtherErrors(one, whole);
+                       });
+  homogeneity.matters = exceeds || homogeneity.has_different_rigs();
   if (whole.termination != Termination::kConverged) {
     whole.reason += "; under this law the recordings do not agree";
-    return;
+  } else if (!exceeds) {
+    homogeneity.verdict += "; the errors from other sources are larger than that";
+  } else if (homogeneity.has_different_rigs()) {
+    whole.warnings.push_back(
+        {.code = "recordings_disagree",
+         .finding = "the estimates mix recordings that do not belong together: do not quote them"});
+  } else if (is_only_joint) {
+    whole.warnings.push_back({.code = "recordings_disagree",
+                              .finding = "the errors assume that the recordings agree, but they do not: do not quote "
+                                         "them"});
   }
-  whole.warnings.push_back({.code = "recordings_disagree",
-                            .finding = "the errors assume that the recordings agree, but they do not",
-                            .advice = "do not quote them"});
 }
 
 }  // namespace
@@ -77,10 +99,10 @@ FittedRecordings FitTogether(std::vector<FittedRecording> recordings, const FitO
     const FitOptions own = ForModel(options, models[m], models).options;
     const std::vector<RunAlone> alone = FitsAlone(result.recordings, m, own);
     JointFit& fit = result.joint.emplace_back(FitModel(result.recordings, m, own, shared));
-    const Homogeneity& homogeneity = result.homogeneity.emplace_back(TestHomogeneity(alone, shared));
-    SetVerdict(homogeneity, fit.whole);
+    Homogeneity& homogeneity = result.homogeneity.emplace_back(TestHomogeneity(alone, shared));
     AddInconstancyError(alone, homogeneity.parameters, fit.whole, fit.runs);
     AddFrictionLawError(alone, fit.whole, fit.runs);
+    SetVerdict(homogeneity, fit.whole);
   }
   return result;
 }

@@ -122,8 +122,8 @@ void AddAmplitudes(const std::vector<AmplitudeDependence>& all, Section& section
 Section AgreementSection(const Identification& identification, std::size_t fit) {
   const Homogeneity& homogeneity = *identification.across[fit].homogeneity;
   Section section{"Do the recordings agree?"};
-  const bool agrees = homogeneity.agrees();
-  section.AddText("Verdict: " + Printable(homogeneity.verdict) + ".", agrees ? Emphasis::kNone : Emphasis::kCaution);
+  section.AddText("Verdict: " + Printable(homogeneity.verdict) + ".",
+                  homogeneity.matters ? Emphasis::kCaution : Emphasis::kNone);
   for (const SharedParameter& parameter : homogeneity.parameters) {
     section.Add(ForestTable(parameter, identification.fits[fit])).AddText(ScatterText(parameter));
   }

@@ -39,6 +39,7 @@ Json SharedParameterJson(const SharedParameter& parameter) {
       .Set("statistic", parameter.statistic)
       .Set("dof", Json(parameter.dof))
       .Set("p", parameter.p)
+      .Set("agrees", Json(parameter.agrees()))
       .Set("mean", parameter.mean)
       .Set("std_error", parameter.std_error)
       .Set("random_effects", RandomEffectsJson(parameter.scatter))

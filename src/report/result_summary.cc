@@ -328,9 +328,20 @@ void EraseWarnings(std::string_view code, FitSummary& summary) {
   std::erase_if(summary.warnings, [&](const Warning& warning) { return warning.code.text().starts_with(code); });
 }
 
+/// What the law does not describe: "all readings", or "recordings 1, 3"; empty if it describes everything.
+std::string UndescribedOf(const Identification& identification, std::size_t index) {
+  std::string list;
+  for (std::size_t k = 0; identification.is_joint() && k < identification.recordings.size(); ++k) {
+    if (identification.FitOf(k, index).HasWarning("lack_of_fit")) AddListed(std::to_string(k + 1), list);
+  }
+  if (!list.empty()) return (list.find(',') == std::string::npos ? "recording " : "recordings ") + list;
+  const bool lacks_fit = identification.fits[index].HasWarning("lack_of_fit") || identification.across[index].lacks_fit;
+  return lacks_fit ? "all readings" : "";
+}
+
 /// Whether the law describes the readings. What it says is no warning any more.
-void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit, bool is_one_of_several,
-                FitSummary& summary) {
+void SetVerdict(const FitReport& fit, const Constancy* constancy, const std::string& undescribed,
+                bool is_one_of_several, FitSummary& summary) {
   const auto is_said = [&](std::string_view code) { EraseWarnings(code, summary); };
   const std::string law = "The law " + std::string(fit.model.name);
   if (fit.termination != Termination::kConverged) {
@@ -343,9 +354,9 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, bool lacks_fit
     });
     return;
   }
-  if (lacks_fit || !SuspectedText(fit, false).empty()) {
-    summary.verdict = law + " does not describe all readings: residuals" + RmsText(fit) + " exceed the noise. " +
-                      MisfitText(fit, is_one_of_several);
+  if (!undescribed.empty() || !SuspectedText(fit, false).empty()) {
+    summary.verdict = law + " does not describe " + (undescribed.empty() ? "all readings" : undescribed) +
+                      ": residuals" + RmsText(fit) + " exceed the noise. " + MisfitText(fit, is_one_of_several);
     summary.emphasis = Emphasis::kCaution;
     is_said("lack_of_fit");
   } else if (constancy != nullptr && !constancy->verdict.empty() && !constancy->constant()) {
@@ -398,30 +409,18 @@ std::string ChangingText(const FitReport& fit) {
 /// Whether several recordings agree. Without a test nothing is known of that.
 void SetAgreement(const Homogeneity& homogeneity, FitSummary& summary) {
   summary.agreement = WithFullStop(Capitalized(Printable(homogeneity.verdict)));
+  if (!homogeneity.p || homogeneity.matters) summary.agreement_emphasis = Emphasis::kCaution;
   if (summary.emphasis == Emphasis::kAlarm) return;
-  if (!homogeneity.p) summary.emphasis = Emphasis::kCaution;
-  if (homogeneity.agrees()) return;
-  const bool has_doubts = summary.emphasis == Emphasis::kCaution;  // which the verdict says
-  summary.verdict = "The errors below assume that the recordings agree: do not quote them." +
-                    (has_doubts ? " " + summary.verdict : std::string());
-  std::erase_if(summary.warnings, [](const Warning& warning) { return warning.code == "recordings_disagree"; });
-  summary.emphasis = homogeneity.disagreeing.empty() ? Emphasis::kCaution : Emphasis::kAlarm;
-}
-
-/// Names the recordings that the law does not describe in one warning.
-void CollectMisfits(const Identification& identification, std::size_t index, FitSummary& summary) {
-  std::string list;
-  for (std::size_t k = 0; k < identification.recordings.size(); ++k) {
-    if (identification.FitOf(k, index).HasWarning("lack_of_fit")) AddListed(std::to_string(k + 1), list);
-  }
-  if (list.empty()) return;
-  EraseWarnings("lack_of_fit", summary);
-  if (identification.across[index].lacks_fit) return;  // the verdict says it
-  summary.warnings.insert(summary.warnings.begin(),
-                          {.code = "lack_of_fit",
-                           .finding = "the law does not describe " +
-                                      std::string(list.find(',') == std::string::npos ? "recording " : "recordings ") +
-                                      list + " (--models all)"});
+  const bool is_mixed = homogeneity.has_different_rigs();  // which explains what the law does not describe
+  const bool has_doubts = !is_mixed && summary.emphasis == Emphasis::kCaution;
+  if (summary.agreement_emphasis == Emphasis::kCaution) summary.emphasis = Emphasis::kCaution;
+  const auto warning =
+      std::ranges::find_if(summary.warnings, [](const Warning& each) { return each.code == "recordings_disagree"; });
+  if (warning == summary.warnings.end()) return;
+  summary.verdict =
+      WithFullStop(Capitalized(summary.TextOf(*warning))) + (has_doubts ? " " + summary.verdict : std::string());
+  if (is_mixed) summary.emphasis = summary.agreement_emphasis = Emphasis::kAlarm;
+  summary.warnings.erase(warning);
 }
 
 /// What the formula assumes, or what disturbs it.
@@ -582,12 +581,8 @@ FitSummary SummarizeFit(const Identification& identification, std::size_t index)
   const AcrossRecordings& across = identification.across[index];
   const IdentifiedRecording* const only = identification.is_joint() ? nullptr : &identification.recordings.front();
   const Constancy* const constancy = only == nullptr ? nullptr : only->ConstancyOf(index);
-  const bool lacks_fit = fit.HasWarning("lack_of_fit") || across.lacks_fit;
-  SetVerdict(fit, constancy, lacks_fit, identification.fits.size() > 1, summary);
-  if (across.homogeneity) {
-    SetAgreement(*across.homogeneity, summary);
-    CollectMisfits(identification, index, summary);
-  }
+  SetVerdict(fit, constancy, UndescribedOf(identification, index), identification.fits.size() > 1, summary);
+  if (across.homogeneity) SetAgreement(*across.homogeneity, summary);
   if (fit.termination != Termination::kConverged) return summary;
   for (const ParameterEstimate& parameter : fit.parameters) {
     summary.parameters.push_back(QuantityOf(parameter, identification.rig));

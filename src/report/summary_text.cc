@@ -242,7 +242,7 @@ void AddVerdict(const ResultSummary& summary, Folding folding, Section& section)
   } else {
     section.AddText(summary.data);
   }
-  AddComparison(summary, section).AddText(fit.agreement, fit.emphasis).AddText(verdict, fit.emphasis);
+  AddComparison(summary, section).AddText(fit.agreement, fit.agreement_emphasis).AddText(verdict, fit.emphasis);
 }
 
 Section FoldedSection(const ResultSummary& summary, Folding folding) {

@@ -86,6 +86,35 @@ TEST(FitTogether, WarnsOfDisagreeingRecordings) {
   EXPECT_THAT(joint.homogeneity[0].verdict, HasSubstr("recording 3 disagrees with the others: its inertia is 1"));
 }
 
+// A rig whose torque is known to 3 % makes a difference of 1 % in inertia worth a remark alone.
+TEST(FitTogether, DoesNotWarnOfADifferenceBelowTheOtherErrors) {
+  std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
+  runs[2].parameters[0] *= 1.01;
+  FitOptions options = PlainOptions();
+  options.rig.emplace().gravity_torque = {kTextbookTorque, 0.03 * kTextbookTorque};
+  const FittedRecordings joint = FitJointModels(Simulate(runs), {"coulomb"}, options);
+  EXPECT_FALSE(joint.homogeneity[0].agrees());
+  EXPECT_TRUE(joint.homogeneity[0].matters);  // one recording is another rig
+  EXPECT_FALSE(joint.joint[0].whole.HasWarning("recordings_disagree"));
+  EXPECT_THAT(joint.homogeneity[0].verdict, EndsWith("; the errors from other sources are larger than that"));
+}
+
+// Inertias that scatter by 0.5 %: the total error contains their standard deviation.
+TEST(FitTogether, LeavesAScatterToTheTotalErrors) {
+  std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
+  const std::vector<double> scale = {0.994, 0.998, 1.002, 1.006};
+  for (std::size_t k = 0; k < 4; ++k) runs[k].parameters[0] *= scale[k];
+  const FittedRecordings joint = FitJointModels(Simulate(runs), {"coulomb"}, PlainOptions());
+  EXPECT_TRUE(joint.homogeneity[0].matters);
+  EXPECT_THAT(joint.homogeneity[0].disagreeing, IsEmpty());
+  const FitReport& whole = joint.joint[0].whole;
+  EXPECT_FALSE(whole.HasWarning("recordings_disagree"));
+  EXPECT_TRUE(whole.HasWarning("not_constant"));
+  const ParameterEstimate& inertia = *whole.Find("inertia");
+  // The sample standard deviation of the four scales is 0.00516.
+  EXPECT_NEAR(*TotalStdError(inertia.std_error, inertia.systematic) / inertia.estimate, 0.00516, 0.0005);
+}
+
 TEST(FitTogether, NamesTheRecordingThatPreventsConvergence) {
   std::vector<SyntheticOptions> runs = ShortRuns(4, "coulomb", 1);
   runs[1].parameters[0] *= 2;

@@ -69,7 +69,7 @@ TEST(AgreementSection, HighlightsDisagreement) {
   Identification report = ExampleJointIdentification();
   const std::string caution = "\x1B[33mVerdict: ";  // SGR 33 of ECMA-48: yellow
   EXPECT_THAT(Agreement(report, {.colour = true}), Not(HasSubstr(caution)));
-  report.across[0].homogeneity->p = 1e-6;
+  report.across[0].homogeneity->matters = true;
   report.across[0].homogeneity->verdict = "the recordings do not agree on inertia, viscous";
   EXPECT_THAT(Agreement(report, {.colour = true}), HasSubstr(caution + "the recordings do not agree"));
 }

@@ -23,7 +23,7 @@ TEST(HomogeneityJson, ReportsSeparateEstimates) {
   const Json inertia = HomogeneityOf(ExampleJointIdentification())["parameters"]["inertia"];
   EXPECT_EQ(
       inertia.dump(),
-      R"({"unit":"kg m^2","statistic":0.16,"dof":1,"p":0.6892,"mean":0.078972,"std_error":0.00024,)"
+      R"({"unit":"kg m^2","statistic":0.16,"dof":1,"p":0.6892,"agrees":true,"mean":0.078972,"std_error":0.00024,)"
       R"("random_effects":{"mean":0.078972,"std_error":0.00024,"text":"0.07897 ± 0.00024","interval95":[0.0759,0.082],)"
       R"("between_std_dev":0.0,"between_interval95":[0.0,0.005]},)"
       R"("recordings":[{"estimate":0.0789,"std_error":0.0003,"text":"0.07890 ± 0.00030","z":-0.4},)"

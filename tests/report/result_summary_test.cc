@@ -248,22 +248,40 @@ TEST(SummarizeFit, DoubtsRecordingsThatAreNotCompared) {
   Homogeneity& homogeneity = *identification.across[0].homogeneity;
   homogeneity.p = 0.5;
   homogeneity.disagreeing.clear();
+  for (IdentifiedRecording& recording : identification.recordings) recording.own_fits[0].warnings.clear();
   identification.across[0].lacks_fit = false;
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);
   homogeneity.p.reset();
   EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
-  homogeneity.p = 1e-4;
-  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kCaution);
-  homogeneity.disagreeing = {1};
-  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kAlarm);
 }
 
-TEST(SummarizeFit, SaysThatTheLawDoesNotDescribeARecording) {
+TEST(SummarizeFit, JudgesADisagreementByWhatItDoesToTheErrors) {
+  Identification identification = ExampleJointIdentification();
+  identification.fits[0].warnings.clear();
+  for (IdentifiedRecording& recording : identification.recordings) recording.own_fits[0].warnings.clear();
+  identification.across[0].lacks_fit = false;
+  Homogeneity& homogeneity = *identification.across[0].homogeneity;
+  homogeneity.p = 1e-4;
+  homogeneity.disagreeing.clear();
+  EXPECT_EQ(SummarizeFit(identification, 0).emphasis, Emphasis::kNone);  // less than the other errors
+  homogeneity.matters = true;
+  const FitSummary scatter = SummarizeFit(identification, 0);
+  EXPECT_EQ(scatter.emphasis, Emphasis::kCaution);
+  EXPECT_THAT(scatter.verdict, StartsWith("The law "));
+  identification.fits[0].warnings = {{"recordings_disagree", "do not quote them"}};
+  homogeneity.disagreeing = {1};
+  const FitSummary odd = SummarizeFit(identification, 0);
+  EXPECT_EQ(odd.emphasis, Emphasis::kAlarm);
+  EXPECT_THAT(odd.verdict, StartsWith("Do not quote them."));
+  EXPECT_FALSE(HasWarning(odd.warnings, "recordings_disagree"));
+}
+
+// Recording 1 of the example has the warning.
+TEST(SummarizeFit, NamesTheRecordingThatTheLawDoesNotDescribe) {
   Identification identification = ExampleJointIdentification();
   identification.fits[0].warnings.clear();
   identification.across[0].homogeneity->p = 0.5;
-  identification.across[0].lacks_fit = true;
-  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe all readings"));
+  EXPECT_THAT(SummarizeFit(identification, 0).verdict, HasSubstr("does not describe recording 1: "));
 }
 
 TEST(SummarizeFit, GivesResidualsInTheCommonUnit) {

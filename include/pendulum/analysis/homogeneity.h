@@ -41,6 +41,8 @@ struct SharedParameter {
   int dof = 0;
   double p = 1;
   RandomEffects scatter;
+
+  bool agrees() const { return p >= Agreement::kDisagree; }
 };
 
 /// Whether recordings differ because their amplitudes differ: value = a + slope · amplitude², with the same slope
@@ -70,7 +72,17 @@ struct Homogeneity {
   std::string reason;   ///< Why there is no test; empty if there is one.
   std::string verdict;  ///< Sentences.
 
+  /// Whether a recording or the rig is another one, or the recordings disagree by more than the joint fit's errors from
+  /// other sources. FitTogether sets it.
+  bool matters = false;
+
   bool agrees() const { return p.value_or(1) >= kDisagree; }
+
+  /// Whether the estimates belong to no pendulum: a recording disagrees with the others, or inertia differs too much.
+  bool has_different_rigs() const { return !disagreeing.empty() || ScatterOfRigs() > 0; }
+
+  /// Relative standard deviation of inertia between recordings if it is too large for one rig; otherwise 0.
+  double ScatterOfRigs() const;
 
   /// Whether some parameters differ, and all of these only through their dependence on amplitude.
   bool is_amplitude() const;

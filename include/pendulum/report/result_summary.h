@@ -34,6 +34,7 @@ struct FitSummary {
   std::string verdict;  ///< Whether the law describes the readings, or why there is no result.
   Emphasis emphasis = Emphasis::kNone;
   std::string agreement;  ///< Whether several recordings agree; empty for one.
+  Emphasis agreement_emphasis = Emphasis::kNone;
   std::string law;        ///< The law of the parameters; empty without a fit.
   std::vector<SummaryQuantity> parameters;
   bool has_systematic = false;           ///< Whether any error is more than statistical.

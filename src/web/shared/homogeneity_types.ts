@@ -18,6 +18,7 @@ export interface RandomEffects {
 
 export interface SharedAgreement {
   unit: string;
+  agrees?: boolean; // absent in results of older versions
   random_effects: RandomEffects;
   recordings: RunEstimate[];
 }

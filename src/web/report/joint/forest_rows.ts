@@ -15,7 +15,7 @@ function recordingRows(agreement: SharedAgreement, outliers: readonly number[]):
     return {
       kind: 'recording',
       label: `recording ${k + 1}`,
-      disagrees: outliers.includes(k + 1),
+      disagrees: agreement.agrees === false && outliers.includes(k + 1),
       estimate,
       text,
       interval95: estimate !== null && reach !== null ? [estimate - reach, estimate + reach] : null,

@@ -17,9 +17,10 @@ const parameter = (estimate: Num, error: Num = null): Parameter =>
     unit: 's',
   }) as Parameter;
 
-function agreement(runs: [Num, Num][], mean: Num = 2): SharedAgreement {
+function agreement(runs: [Num, Num][], mean: Num = 2, agrees = true): SharedAgreement {
   return {
     unit: 's',
+    agrees,
     random_effects: { mean, text: '2.0 ± 0.2', interval95: [1.5, 2.5] },
     recordings: runs.map(([estimate, std_error]) => ({ estimate, std_error, text: `${estimate} ± ${std_error}` })),
   };
@@ -52,6 +53,15 @@ describe('the forest plot', () => {
     expect(forestSentence('moment of inertia', 's', rows)).toBe(
       'Forest plot of the moment of inertia in s: recording 1 1.9 ± 0.1, recording 2 2 ± 0.1, joint fit 2 ± 0.05 and random effects 2.0 ± 0.2.',
     );
+  });
+
+  test('marks an outlier at the parameters that differ', () => {
+    const marks = (agrees: boolean): boolean[] => {
+      const parameters = { inertia: agreement([[1.9, 0.1], [2, 0.1]], 2, agrees) };
+      return forestRows(homogeneity({ outliers: [2], parameters }), 'inertia', undefined).map((row) => row.disagrees);
+    };
+    expect(marks(false)).toEqual([false, true, false]);
+    expect(marks(true)).toEqual([false, false, false]);
   });
 
   test('shows intervals of similar length completely', () => {
