@@ -35,7 +35,7 @@ struct FitSummary {
   Emphasis emphasis = Emphasis::kNone;
   std::string agreement;  ///< Whether several recordings agree; empty for one.
   Emphasis agreement_emphasis = Emphasis::kNone;
-  std::string law;        ///< The law of the parameters; empty without a fit.
+  std::string law;  ///< The law of the parameters; empty without a fit.
   std::vector<SummaryQuantity> parameters;
   bool has_systematic = false;           ///< Whether any error is more than statistical.
   std::string losses;                    ///< What took the energy, with shares; empty for a law with one loss.
