@@ -4,7 +4,7 @@
 import type { Headline, Level } from '../shared/banner';
 import { visible } from '../shared/names';
 import { sentence } from '../shared/prose';
-import type { ModelCounts, ParameterSummary } from './types';
+import type { ModelCounts, ParameterSummary, Summary } from './types';
 import { parametersOf, shownModel, type View } from './view';
 import { counted } from './words';
 
@@ -42,8 +42,10 @@ function nothing(view: View): Headline | null {
   };
 }
 
-const levelOf = ({ converged, fits }: ModelCounts, otherwise: Level): Level =>
-  converged < kFew * fits ? 'bad' : converged < kMost * fits && otherwise === 'good' ? 'caution' : otherwise;
+function levelOf({ converged, fits }: ModelCounts, { disagreement }: Summary, otherwise: Level): Level {
+  if (converged < kFew * fits) return 'bad';
+  return otherwise === 'good' && (converged < kMost * fits || disagreement) ? 'caution' : otherwise;
+}
 
 export function headline(view: View): Headline {
   const none = nothing(view);
@@ -58,5 +60,5 @@ export function headline(view: View): Headline {
     return { level: 'bad', title: counts.text, sentence: `${none} ${groups}` };
   }
   const found = grouping.is_compared && verdict ? ` ${verdict.text}` : '';
-  return { level: levelOf(model, verdict?.level ?? 'caution'), title: counts.text, sentence: groups + found };
+  return { level: levelOf(model, view.summary, verdict?.level ?? 'caution'), title: counts.text, sentence: groups + found };
 }

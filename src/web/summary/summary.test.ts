@@ -223,6 +223,7 @@ describe('the headline', () => {
   test('says which recordings disagree as the program does', () => {
     const disagreement = 'One recording disagrees: d.csv (inertia 0.081402, the others 0.078999: 3 % more, z 17.8).';
     expect(disagreementText(summary([], [], { disagreement }))).toBe(disagreement);
+    expect(of([], 99, { disagreement }).level).toBe('caution');
     expect(disagreementText(summary([], []))).toBe('');
   });
 
