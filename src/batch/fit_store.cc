@@ -12,6 +12,7 @@
 
 #include <SQLiteCpp/Savepoint.h>
 
+#include "batch/batch_agreement.h"
 #include "batch/fit_store_queries.h"
 #include "batch/sqlite.h"
 #include "pendulum/base/sha256.h"
@@ -352,6 +353,12 @@ Result<std::vector<ListedFit>> FitStore::RunsOf(const std::string& batch) {
     while (rows.executeStep()) fits.push_back(FitOf(rows));
     return fits;
   });
+}
+
+Result<BatchAgreement> FitStore::AgreementOf(const std::string& batch) {
+  ASSIGN_OR_RETURN(const ListedBatch found, FindBatch(batch));
+  return state_->Read(
+      [&](SQLite::Database& database) -> Result<BatchAgreement> { return AgreementOfBatch(database, found.batch); });
 }
 
 Result<std::vector<FitStore::Waiting>> FitStore::WaitingRuns() {

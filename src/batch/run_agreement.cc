@@ -16,6 +16,7 @@
 #include "batch/kept_result.h"
 #include "batch/run_kinds.h"
 #include "pendulum/analysis/agreement.h"
+#include "pendulum/analysis/random_effects.h"
 #include "pendulum/analysis/separate_estimates.h"
 #include "pendulum/model/motion_model.h"
 #include "pendulum/report/json_parts.h"
@@ -33,8 +34,9 @@ constexpr std::size_t kMaxRows = 50;
 /// A run of a group.
 struct Member {
   std::string id;
-  FitAloneResult fit;                   ///< No names if the run cannot be compared.
-  std::vector<std::string> units = {};  ///< Of the parameters of `fit`.
+  FitAloneResult fit;                    ///< No names if the run cannot be compared.
+  std::vector<std::string> units = {};   ///< Of the parameters of `fit`.
+  Eigen::VectorXd total_std_error = {};  ///< Of the parameters of `fit`, from all sources.
 };
 
 /// The free parameters of the pendulum in a fit, in the order of the model.
@@ -120,10 +122,13 @@ Member MemberOf(std::string id, const std::string& text, const std::string& mode
   if (!covariance || !(covariance->diagonal().minCoeff() > 0)) return member;
   FitAloneResult alone{
       names, Eigen::VectorXd(static_cast<Index>(names.size())), *covariance, {}, SystematicOf(*fit, names)};
+  member.total_std_error = covariance->diagonal().cwiseSqrt();
   for (Index i = 0; i < alone.value.size(); ++i) {
     const Json& parameter = (*fit)["parameters"][names[static_cast<std::size_t>(i)]];
     alone.value[i] = parameter["estimate"].get<double>();
     member.units.push_back(parameter["unit"].get<std::string>());
+    const auto total = parameter.find("total_std_error");
+    if (total != parameter.end() && total->is_number()) member.total_std_error[i] = total->get<double>();
     alone.t95.push_back(HalfInterval(parameter));
   }
   member.fit = std::move(alone);
@@ -153,6 +158,33 @@ DisagreeingRun DisagreementOf(const std::vector<SeparateEstimates>& estimates, s
   return described;
 }
 
+/// The mean of parameter j over the runs that are no outliers. Its error contains their scatter, and of each source
+/// that all of them share the mean square.
+RunsMean MeanOf(const std::vector<const Member*>& members, const std::vector<SeparateEstimates>& estimates,
+                const std::vector<std::size_t>& outliers, Index j) {
+  std::vector<double> values, errors;
+  double shared = 0;
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    if (std::ranges::find(outliers, k) != outliers.end()) continue;
+    const double variance = estimates[k].covariance(j, j), total = members[k]->total_std_error[j];
+    values.push_back(estimates[k].value[j]);
+    errors.push_back(std::sqrt(variance));
+    shared += std::max(total * total - variance, 0.0);
+  }
+  const auto count = static_cast<Index>(values.size());
+  const auto row = static_cast<std::size_t>(j);
+  RunsMean mean{estimates.front().names[row], members.front()->units[row], values.front(), errors.front(),
+                values.size()};
+  if (count > 1) {
+    const RandomEffects scatter =
+        SummarizeScatter(Eigen::VectorXd::Map(values.data(), count), Eigen::VectorXd::Map(errors.data(), count));
+    mean.mean = scatter.mean;
+    mean.total_std_error = scatter.std_error;
+  }
+  mean.total_std_error = std::hypot(mean.total_std_error, std::sqrt(shared / static_cast<double>(count)));
+  return mean;
+}
+
 /// One pendulum: its runs, and the test.
 class Group {
  public:
@@ -180,12 +212,14 @@ class Group {
     if (!agreement.p) return std::nullopt;
     std::vector<std::size_t> outliers;
     if (*agreement.p < Agreement::kDisagree) outliers = FindDisagreeing(estimates);
-    GroupAgreement tested{name_, members.size(), agreement.statistic, agreement.dof, *agreement.p, {}};
+    GroupAgreement tested{name_, members.size(), agreement.statistic, agreement.dof, *agreement.p, {}, {}};
     for (const std::size_t k : outliers) {
       tested.outliers.push_back(DisagreementOf(estimates, k, outliers, members[k]->id));
       constexpr std::size_t kShare = 10;  // more than one in ten are no exceptions
       if (outliers.size() == 1 || kShare * outliers.size() <= members.size()) named.insert(members[k]->id);
     }
+    for (Index j = 0; j < estimates.front().value.size(); ++j)
+      tested.means.push_back(MeanOf(members, estimates, outliers, j));
     return tested;
   }
 
@@ -218,7 +252,7 @@ RunAgreement TestRunAgreement(SQLite::Database& database, const std::string& mod
   SQLite::Statement rows(database, "SELECT " + groups.sql +
                                        R"sql( AS pendulum, id, result FROM runs JOIN fits USING(run)
   WHERE model = ? AND status = 'converged' AND result IS NOT NULL AND )sql" +
-                                       kIsLiveFit + " ORDER BY pendulum, position, id");
+                                       kIsLiveFit + " AND " + groups.condition + " ORDER BY pendulum, position, id");
   sqlite::Bind(rows, model);
   std::vector<GroupAgreement>& tested = agreement.rows;
   std::optional<Group> group;

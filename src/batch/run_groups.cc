@@ -142,7 +142,7 @@ std::map<std::pair<std::string, std::string>, RunValues> ValuesByGroup(SQLite::D
   SQLite::Statement rows(database, "SELECT " + groups.sql + R"sql(, estimate, std_error, unit
   FROM runs JOIN fits USING(run) JOIN quantities USING(run, model)
   WHERE model = ? AND name = ? AND status = 'converged' AND fixed = 0 AND estimate IS NOT NULL AND std_error > 0
-    AND )sql" + kIsLiveFit);
+    AND )sql" + kIsLiveFit + " AND " + groups.condition);
   sqlite::Bind(rows, model, std::string(name));
   std::map<std::pair<std::string, std::string>, RunValues> values;
   while (rows.executeStep()) {
@@ -172,6 +172,30 @@ std::string SharedWords(const RunGroups& groups) {
   }
 }
 
+/// Sets the numbers of a grouping, and the groups whose runs have different sources.
+void CountGroups(SQLite::Database& database, RunGroups& groups) {
+  const std::string fitted = kIsFitted + " AND " + groups.condition;
+  SQLite::Statement sizes(database,
+                          "SELECT coalesce(sum(n), 0), count(*), coalesce(min(n), 0), coalesce(max(n), 0) FROM (SELECT "
+                          "count(*) AS n FROM runs WHERE " +
+                              fitted + " GROUP BY " + groups.sql + ")");
+  sizes.executeStep();
+  groups.runs = sizes.getColumn(0).getInt64();
+  groups.groups = sizes.getColumn(1).getInt64();
+  groups.smallest = sizes.getColumn(2).getInt64();
+  groups.largest = sizes.getColumn(3).getInt64();
+  const std::int64_t without_rig =
+      database.execAndGet("SELECT count(*) FROM runs WHERE " + kHasNoRig + " AND " + fitted).getInt64();
+  if (without_rig < groups.runs) groups.without_rig = without_rig;
+  const std::vector<std::string> own = sqlite::Texts(
+      database,
+      "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " + kIsLive + " AND " +
+          groups.condition +
+          " AND run IN (SELECT run FROM fits WHERE status = 'converged' AND stale IS NULL)) GROUP BY pendulum HAVING "
+          "count(DISTINCT sources) > 1");
+  groups.own_sources.insert(own.begin(), own.end());
+}
+
 }  // namespace
 
 bool IsWayToGroup(const std::string& group_by) { return group_by == "all" || group_by == "folder"; }
@@ -183,24 +207,14 @@ std::string ColumnSql(const std::string& column) {
 
 RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by) {
   RunGroups groups = Choose(database, group_by);
-  SQLite::Statement sizes(database,
-                          "SELECT coalesce(sum(n), 0), count(*), coalesce(min(n), 0), coalesce(max(n), 0) FROM (SELECT "
-                          "count(*) AS n FROM runs WHERE " +
-                              kIsFitted + " GROUP BY " + groups.sql + ")");
-  sizes.executeStep();
-  groups.runs = sizes.getColumn(0).getInt64();
-  groups.groups = sizes.getColumn(1).getInt64();
-  groups.smallest = sizes.getColumn(2).getInt64();
-  groups.largest = sizes.getColumn(3).getInt64();
-  const std::int64_t without_rig =
-      database.execAndGet("SELECT count(*) FROM runs WHERE " + kHasNoRig + " AND " + kIsFitted).getInt64();
-  if (without_rig < groups.runs) groups.without_rig = without_rig;
-  const std::vector<std::string> own = sqlite::Texts(
-      database,
-      "SELECT pendulum FROM (SELECT " + groups.sql + " AS pendulum, sources FROM runs WHERE " + kIsLive +
-          " AND run IN (SELECT run FROM fits WHERE status = 'converged' AND stale IS NULL)) GROUP BY pendulum HAVING "
-          "count(DISTINCT sources) > 1");
-  groups.own_sources.insert(own.begin(), own.end());
+  CountGroups(database, groups);
+  return groups;
+}
+
+RunGroups GroupBatch(SQLite::Database& database, std::int64_t batch) {
+  RunGroups groups;
+  groups.condition = "runs.run IN (SELECT run FROM requests WHERE batch = " + std::to_string(batch) + ")";
+  CountGroups(database, groups);
   return groups;
 }
 

@@ -21,11 +21,12 @@ struct RunGroups {
     kAll,         ///< All runs are of one pendulum.
   };
   By by = By::kAll;
-  std::string name = {};     ///< "rig", "bench", "folder", "true values"; empty: all runs are one group.
-  std::string sql = "''";    ///< The group of a row of table runs, a text.
-  bool is_stated = false;    ///< A flag, the manifest or the true values say so; otherwise it is an assumption.
-  std::string one_rig = {};  ///< The rig file of all runs, for kAll; empty if there is none.
-  std::int64_t runs = 0;     ///< Fitted runs (kIsFitted); only these are counted here.
+  std::string name = {};           ///< "rig", "bench", "folder", "true values"; empty: all runs are one group.
+  std::string sql = "''";          ///< The group of a row of table runs, a text.
+  std::string condition = "true";  ///< The rows of table runs that are grouped.
+  bool is_stated = false;          ///< A flag, the manifest or the true values say so; otherwise it is an assumption.
+  std::string one_rig = {};        ///< The rig file of all runs, for kAll; empty if there is none.
+  std::int64_t runs = 0;           ///< Fitted runs (kIsFitted); only these are counted here.
   std::int64_t groups = 0;
   std::int64_t smallest = 0, largest = 0;  ///< Runs of a group.
   std::int64_t without_rig = 0;            ///< Runs without a rig, if others have one.
@@ -41,6 +42,9 @@ struct RunGroups {
 /// its columns pendulum, group and rig_id, the true values of simulated recordings, several rig files; if it names no
 /// rig, by folders, if some have several recordings. Otherwise all runs are of one pendulum. `group_by` must exist.
 RunGroups GroupRuns(SQLite::Database& database, const std::string& group_by);
+
+/// All runs of a batch of a FitStore as one group. batch: its number.
+RunGroups GroupBatch(SQLite::Database& database, std::int64_t batch);
 
 /// Whether a name is not a column, but a way to group runs: all, folder.
 bool IsWayToGroup(const std::string& group_by);

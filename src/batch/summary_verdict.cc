@@ -80,7 +80,7 @@ RunCounts CountRuns(SQLite::Database& database, const StoreMeta& meta) {
 std::string MainLaw(SQLite::Database& database, const StoreOverview& overview, const RunGroups& groups) {
   SQLite::Statement laws(database, "WITH laws AS (SELECT " + groups.sql + R"sql( AS pendulum, coalesce(recommended,
     (SELECT min(model) FROM fits WHERE fits.run = runs.run AND fits.stale IS NULL HAVING count(*) = 1)) AS law FROM runs WHERE )sql" +
-                                       kIsFitted + R"sql()
+                                       kIsFitted + " AND " + groups.condition + R"sql()
 SELECT law FROM laws WHERE law IS NOT NULL AND
     (?1 < 2 OR pendulum IN (SELECT pendulum FROM laws GROUP BY pendulum HAVING count(*) > 1))
   GROUP BY law ORDER BY count(*) DESC, law LIMIT 1)sql");

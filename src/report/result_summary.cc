@@ -352,6 +352,10 @@ void SetVerdict(const FitReport& fit, const Constancy* constancy, const std::str
     std::erase_if(summary.warnings, [&](const Warning& warning) {
       return warning.code == "at_bound" || (why != nullptr && warning == *why);
     });
+    if (undescribed.starts_with("recording")) {  // one warning for all of them
+      is_said("lack_of_fit");
+      summary.warnings.push_back({.code = "lack_of_fit", .finding = "the law does not describe " + undescribed});
+    }
     return;
   }
   if (!undescribed.empty() || !SuspectedText(fit, false).empty()) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pendulum/base/json.h"
+#include "pendulum/base/rounding.h"
 #include "pendulum/base/try.h"
 #include "pendulum/base/utc_time.h"
 #include "pendulum/service/fit_request.h"
@@ -145,6 +146,28 @@ HttpResponse ListBatches(ServiceState& state, const Call& call) {
 }
 
 HttpResponse GetBatch(ServiceState& state, const Call& call) { return BatchAnswer(state, call.id, 200); }
+
+HttpResponse GetBatchAgreement(ServiceState& state, const Call& call) {
+  const auto agreement = state.store->AgreementOf(call.id);
+  if (!agreement) return ProblemAnswer(agreement.error());
+  Json means = Json::array(), outliers = Json::array();
+  for (const RunsMean& mean : agreement->means) {
+    means.push_back({{"name", mean.parameter},
+                     {"unit", mean.unit},
+                     {"mean", mean.mean},
+                     {"total_std_error", mean.total_std_error},
+                     {"text", PlusMinusText(mean.mean, mean.total_std_error)},
+                     {"recordings", mean.runs}});
+  }
+  for (const DisagreeingRun& run : agreement->outliers)
+    outliers.push_back({{"id", run.id}, {"parameter", run.parameter}});
+  return JsonAnswer({{"law", agreement->law.empty() ? Json(nullptr) : Json(agreement->law)},
+                     {"level", agreement->level},
+                     {"text", agreement->text},
+                     {"means", std::move(means)},
+                     {"outliers", std::move(outliers)}},
+                    200);
+}
 
 HttpResponse GetBatchEvents(ServiceState& state, const Call& call) {
   std::shared_ptr<const BatchProgress> progress = state.queue.ProgressOf(call.id);

@@ -9,6 +9,7 @@ namespace pendulum {
 HttpResponse PostBatch(ServiceState& state, const Call& call);
 HttpResponse ListBatches(ServiceState& state, const Call& call);
 HttpResponse GetBatch(ServiceState& state, const Call& call);
+HttpResponse GetBatchAgreement(ServiceState& state, const Call& call);
 HttpResponse GetBatchEvents(ServiceState& state, const Call& call);
 HttpResponse DeleteBatch(ServiceState& state, const Call& call);
 

@@ -35,6 +35,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/v1/batches", Lane::kQuick, kHolders, QueryKind::kOwn, ListBatches},
     Route{"GET", "/v1/batches/{id}", Lane::kQuick, kHolders, QueryKind::kNone, GetBatch},
     Route{"DELETE", "/v1/batches/{id}", Lane::kQuick, kHolders, QueryKind::kOwn, DeleteBatch},
+    Route{"GET", "/v1/batches/{id}/agreement", Lane::kFit, kHolders, QueryKind::kNone, GetBatchAgreement},
     Route{"GET", "/v1/batches/{id}/events", Lane::kQuick, kHolders, QueryKind::kNone, GetBatchEvents},
     Route{"POST", "/v1/simulations", Lane::kFit, kHolders, QueryKind::kOwn, PostSimulation},
     Route{"POST", "/v1/calibrations", Lane::kFit, kHolders, QueryKind::kOwn, PostCalibration},

@@ -62,7 +62,7 @@ class DebianTest(unittest.TestCase):
         self.check_contents(self.tools, [r"\./usr/bin/[a-z_]+", r"\./usr/share/man/man1/[a-z_]+\.1\.gz", r"\./usr/share/pendulum/.*",
                                          r"\./usr/share/doc/pendulum/(?:changelog\.gz|copyright|examples/nginx\.conf|README\.md)",
                                          r"\./usr/share/doc/pendulum/examples/datasets/\w+\.(?:csv|json|txt)",
-                                         r"\./usr/share/doc/pendulum/html/\w+\.(?:css|html|png)", r"\./usr/share/doc-base/pendulum",
+                                         r"\./usr/share/doc/pendulum/html/\w+\.(?:css|html|js|png|svg)", r"\./usr/share/doc-base/pendulum",
                                          r"\./usr/share/bash-completion/completions/[a-z_]+",
                                          r"\./usr/share/zsh/vendor-completions/_[a-z_]+",
                                          r"\./usr/share/fish/vendor_completions\.d/[a-z_]+\.fish",

@@ -30,6 +30,7 @@ using asked_service::PartOf;
 using asked_service::Recording;
 using asked_service::RestingRecording;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::SizeIs;
@@ -128,6 +129,22 @@ TEST_F(FittingServiceBatchesTest, FitsAllRunsInTheOrderSent) {
     EXPECT_EQ(fit["id"], accepted["fits"][i]["id"]);
   }
   EXPECT_EQ(batch["fits"][1]["reason"], "the reading is constant: no swing");
+}
+
+// The two recordings that are fitted have the same true inertia.
+TEST_F(FittingServiceBatchesTest, SaysWhetherTheRecordingsAgree) {
+  const std::string location = Sent(ThreeRecordings());
+  Done(location);
+  const Json agreement = JsonAt(location + "/agreement");
+  EXPECT_EQ(agreement["law"], "viscous");
+  EXPECT_EQ(agreement["level"], "good");
+  EXPECT_THAT(agreement["text"].get<std::string>(), StartsWith("The 2 recordings agree under the law viscous (p "));
+  ASSERT_EQ(agreement["means"].size(), 2U);
+  EXPECT_EQ(agreement["means"][0]["name"], "inertia");
+  EXPECT_EQ(agreement["means"][0]["recordings"], 2);
+  EXPECT_THAT(agreement["means"][0]["text"].get<std::string>(), HasSubstr(" ± "));
+  EXPECT_THAT(agreement["outliers"], IsEmpty());
+  EXPECT_THAT(AnswerOf(Get("/v1/batches/000000000000000000000000/agreement")), StartsWith("404 "));
 }
 
 // The answer for a run of a batch equals the answer for a single fit.

@@ -23,7 +23,8 @@ ROUTES = {
           "/v1/fits/{}/report": {"get"},
     "/v1/fits/{}/markdown": {"get"}, "/v1/fits/{}/refits": {"post"}, "/v1/batches": {"get", "post"},
           "/v1/batches/{}": {"get", "delete"},
-    "/v1/batches/{}/events": {"get"}, "/v1/previews": {"post"}, "/v1/simulations": {"post"}, "/v1/calibrations": {"post"}, "/v1/models": {"get"},
+    "/v1/batches/{}/events": {"get"}, "/v1/batches/{}/agreement": {"get"},
+    "/v1/previews": {"post"}, "/v1/simulations": {"post"}, "/v1/calibrations": {"post"}, "/v1/models": {"get"},
     "/v1/examples": {"get"}, "/v1/examples/{}": {"get"}, "/v1/live": {"get"}, "/v1/live/events": {"get"},
           "/v1/live/recording": {"get"},
     "/healthz": {"get"}, "/metrics": {"get"}, "/openapi.json": {"get"}}
@@ -183,10 +184,11 @@ class Answers(Served):
         self.assertIn(b"event: done", self.check("get", f"{batch}/events", f"{place}/events").body)
         done = self.check("get", batch, place).json()
         self.assertEqual((done["state"], done["done"], done["failed"]), ("done", 3, 1))
+        self.check("get", f"{batch}/agreement", f"{place}/agreement")
         self.check("get", batches, "/v1/batches?limit=5")
         self.check("get", "/v1/fits", f"/v1/fits?batch={done['id']}")
         self.check("get", "/v1/fits/{}", f"/v1/fits/{done['fits'][0]['id']}", status=422)
-        for target, method in ((batch, "get"), (f"{batch}/events", "get"), (batch, "delete")):
+        for target, method in ((batch, "get"), (f"{batch}/events", "get"), (f"{batch}/agreement", "get"), (batch, "delete")):
             self.check(method, target, target.format("none"), status=404)
         self.check("delete", batch, place + "?keep=all", status=400)
         self.check("delete", batch, place + "?keep=done", status=204)

@@ -13,6 +13,7 @@
 
 #include "pendulum/base/status.h"
 #include "pendulum/batch/store.h"
+#include "pendulum/batch/store_summary.h"
 #include "pendulum/identify/identify.h"
 
 namespace pendulum {
@@ -90,6 +91,15 @@ struct ListedBatch {
   std::int64_t runs = 0, done = 0, failed = 0;
 };
 
+/// Whether the recordings of a batch agree, by the rules for repeats in a store of refit_pendulums (Summarize).
+struct BatchAgreement {
+  std::string law;    ///< Compared under this law, the one recommended most often; empty: nothing is compared.
+  std::string level;  ///< good or caution.
+  std::string text;   ///< In sentences, which name recordings as the list does.
+  std::vector<RunsMean> means;
+  std::vector<DisagreeingRun> outliers;  ///< By the ids of runs.
+};
+
 /// The store of a service: a store of refit_pendulums that also contains the inputs of the runs. For many threads at a
 /// time. When a function that changes the store returns, the change is on the disk; simultaneous changes share one
 /// commit. While the store is open, no other process may write to it. Readers in other processes block nobody
@@ -136,6 +146,9 @@ class FitStore {
 
   /// The runs of a batch in the order in which they were sent, without models and windows.
   Result<std::vector<ListedFit>> RunsOf(const std::string& batch);
+
+  /// The finished runs of a batch, taken for repeats of one pendulum.
+  Result<BatchAgreement> AgreementOf(const std::string& batch);
 
   /// A waiting run: its id and the id of its batch.
   struct Waiting {

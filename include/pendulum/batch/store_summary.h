@@ -72,6 +72,14 @@ struct DisagreeingRun {
   double z = std::numeric_limits<double>::quiet_NaN();  ///< As of an Outlier; NaN: not known.
 };
 
+/// A parameter of the pendulum over its runs without outliers (MODEL.md eq. (10.5)).
+struct RunsMean {
+  std::string parameter, unit;
+  double mean = 0;
+  double total_std_error = 0;  ///< Contains the scatter of the runs, and the errors that all of them share.
+  std::size_t runs = 0;
+};
+
 /// The test of the runs of one pendulum for agreement in all parameters together (Agreement).
 struct GroupAgreement {
   std::optional<std::string> group;  ///< std::nullopt: all runs are one group.
@@ -80,6 +88,7 @@ struct GroupAgreement {
   int dof = 0;
   double p = 1;
   std::vector<DisagreeingRun> outliers;
+  std::vector<RunsMean> means;  ///< Of each parameter.
 };
 
 /// Runs that disagree with the other runs of their pendulum, by the test of a joint fit (FindDisagreeing).

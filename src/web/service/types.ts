@@ -113,6 +113,15 @@ export interface Batch {
   fits: BatchRun[];
 }
 
+/** Whether the recordings of a batch agree, and their means. */
+export interface BatchAgreement {
+  law: string | null;
+  level: 'good' | 'caution';
+  text: string;
+  means: { name: string; unit: string; text: string; recordings: number }[];
+  outliers: { id: string; parameter: string }[];
+}
+
 /** A finished run of a batch. */
 export interface BatchProgress {
   id: string;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /** A batch: its runs, as they are finished. */
 
+import { badge } from '../../shared/badge';
 import { button, el, text, type Child } from '../../shared/dom';
 import { localTime } from '../../shared/local_time';
 import { typeset } from '../../shared/prose';
@@ -12,8 +13,9 @@ import { selectionBar } from '../selection';
 import { ask, askJson } from '../server/api';
 import type { ServerEvent } from '../server/sse';
 import type { Place, View } from '../shell';
-import type { Batch, BatchProgress, BatchRun, FitItem, FitList } from '../types';
+import type { Batch, BatchAgreement, BatchProgress, BatchRun, FitItem, FitList } from '../types';
 import { durationWords, pause } from '../waiting';
+import { agreementSection } from './agreement_section';
 import { fitRow, fitTable, isUnfitted } from './fit_rows';
 import { alertPlace, attempt, showProblem } from './problem_view';
 
@@ -59,6 +61,7 @@ class BatchView {
   private readonly failed = el('ul', { class: 'failed', 'aria-label': 'Recordings that could not be fitted' });
   private readonly problems = alertPlace();
   private readonly connection = text('', 'quiet');
+  private readonly agreement = el('div');
   private readonly rows = new Map<string, HTMLElement>();
   private readonly full = new Set<string>();
   private readonly told = new Set<string>();
@@ -66,6 +69,7 @@ class BatchView {
   private readonly cancel = button('Cancel', () => void this.stop());
   private readonly began = performance.now();
   private done = 0;
+  private fitted = 0;
   private left = 0;
   private changed = false;
   private over = false;
@@ -102,6 +106,7 @@ class BatchView {
   private tell(state: Pick<Batch, 'runs' | 'done' | 'failed'>): void {
     if (state.done < this.done) return;
     this.done = state.done;
+    this.fitted = state.done - state.failed;
     this.left = state.runs - state.done;
     this.cancel.hidden = this.left === 0;
     this.bar.max = Math.max(1, state.runs);
@@ -166,6 +171,15 @@ class BatchView {
     this.put(item);
   }
 
+  /** Says whether the fitted recordings agree, and marks those that do not. */
+  private async tellAgreement(): Promise<void> {
+    if (this.fitted < 2) return;
+    const found = await askJson<BatchAgreement>(`${this.path}/agreement`, { signal: this.place.signal });
+    this.agreement.replaceChildren(agreementSection(found));
+    for (const { id } of found.outliers)
+      this.rows.get(id)?.querySelector('th')?.append(' ', badge('disagrees with the others', 'caution'));
+  }
+
   private actions(): HTMLElement {
     const { batch } = this;
     const remove = button('Delete all', () => void this.remove(remove), { class: 'danger' });
@@ -191,6 +205,7 @@ class BatchView {
       runs > kMostRows && text(`The first ${kMostRows} are listed here; “Past fits” has all of them.`, 'quiet');
     const sent: Child[] = ['Sent ', localTime(this.batch.created), ', your local time.'];
     main.append(
+      this.agreement,
       el('p', { class: 'quiet' }, ...sent),
       this.words,
       this.failed,
@@ -208,7 +223,8 @@ class BatchView {
     const lost = (s: number): void =>
       void (this.connection.textContent = `The connection broke off; next attempt in ${Math.ceil(s)} s.`);
     const following = follow(`${this.path}/events`, { take: this.take, connected, lost }, signal);
-    await Promise.all([following, this.fillNumbers(), this.tellTime()]).catch((error: unknown) => {
+    const numbers = this.fillNumbers().then(() => this.tellAgreement());
+    await Promise.all([following, numbers, this.tellTime()]).catch((error: unknown) => {
       if (!signal.aborted) showProblem(this.problems, error);
     });
   }
