@@ -273,6 +273,15 @@ test('several recordings are fitted with visible progress, and each failed one g
     JSON.stringify(told),
   );
   const id = new URL(page.url()).pathname.split('/').pop();
+  await page.locator('.batch-agreement').waitFor();
+  // runs_4.csv, sent as run_3, run_7 and run_11, is of an inertia that is 3 % larger.
+  assert.match(await page.locator('.batch-agreement .banner.caution').textContent(), /3 recordings disagree with the others .*run_3\.csv .*: 3 % more/);
+  const odd = page.locator('.runs tbody tr', { hasText: 'disagrees with the others' });
+  assert.deepEqual(await odd.locator('th bdi').allTextContents(), ['run_3.csv', 'run_7.csv', 'run_11.csv']);
+  const [inertia] = (await service.json(`/v1/batches/${id}/agreement`)).means;
+  assert.equal(inertia.recordings, 9);
+  const mean = await page.locator('.batch-agreement tbody tr').first().textContent();
+  assert.ok(mean.includes(inertia.text), mean);
   const { fits } = await service.json(`/v1/batches/${id}`);
   const rows = page.locator('.runs tbody tr');
   assert.deepEqual(

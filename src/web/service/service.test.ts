@@ -240,7 +240,7 @@ describe('lists of fits', () => {
       value: '0.0790 ± 0.0028',
       unit: 'kg\u00a0m²',
     });
-    expect(parameterWords(model('x', 'converged'), 'coulomb')).toEqual({ value: '0.00220 ± 0.00020', unit: 'G' });
+    expect(parameterWords(model('x', 'converged'), 'coulomb')).toEqual({ value: '0.00220 ± 0.00020', unit: 'over G' });
     expect(parameterWords(model('x', 'converged', null), 'inertia').value).toBe('–');
     expect(parameterWords(null, 'inertia').value).toBe('–');
   });

@@ -23,12 +23,12 @@ export function mainModel(item: Pick<FitItem, 'recommended' | 'models'>): ItemMo
   return mainFit(item.models, item.recommended, (model) => model.rms_residual);
 }
 
-/** "0.0790 ± 0.0028" and "kg m²", "G s²" without a rig; "–" if the model has no such parameter. */
+/** "0.0790 ± 0.0028" and "kg m²", "s², over G" without a rig; "–" if the model has no such parameter. */
 export function parameterWords(model: ItemModel | null, name: string): { value: string; unit: string } {
   const parameter = model?.parameters?.[name];
   if (!parameter || parameter.estimate === null) return { value: '–', unit: '' };
-  const overG = symbolOf(name, parameter.unit)?.endsWith('/G') ? 'G' : '';
-  const unit = [overG, unitText(parameter.unit)].filter((part) => part !== '').join('\u00a0');
+  const overG = symbolOf(name, parameter.unit)?.endsWith('/G') ? 'over G' : '';
+  const unit = [unitText(parameter.unit), overG].filter((part) => part !== '').join(', ');
   return { value: numberText(parameter.text), unit };
 }
 
@@ -90,18 +90,14 @@ export function windowWords(window: readonly [number, number] | null | undefined
   return window ? windowText(window) : '–';
 }
 
-/** The parameters of a list: past fits show their windows and dates instead of friction. */
-const parametersOf = (isPast: boolean): readonly (readonly [string, string])[] =>
-  isPast ? kParameters.slice(0, 1) : kParameters;
-
 /** isPast: a row of the list of past fits, else of a batch. */
 export function fitRow(item: FitItem, selection: Selection, isPast = true): HTMLTableRowElement {
   const model = mainModel(item);
   const { words, level } = stateOf(item);
   const row = el('tr', { role: 'row', 'data-id': item.id }, selectCell(item, selection), nameCell(item));
-  const values = parametersOf(isPast).map(([name, label]) => parameterCell(model, name, label));
+  const values = kParameters.map(([name, label]) => parameterCell(model, name, label));
   append(row, [cell('Law', model?.model ?? '–'), isPast && cell('Window', windowWords(item.window_s)), ...values]);
-  append(row, [cell('Status', badge(words, level)), isPast && cell('When', localTime(item.created))]);
+  append(row, [cell('Status', badge(words, level)), isPast && cell('When', localTime(item.created, true))]);
   return row;
 }
 
@@ -113,7 +109,7 @@ export function fitTable(caption: string, isPast = true): { element: HTMLElement
   heading(isPast ? 'Name or file' : 'Recording');
   heading('Law');
   if (isPast) heading('Window');
-  for (const [name, label] of parametersOf(isPast)) {
+  for (const [name, label] of kParameters) {
     heading(`${label} `, symbolElement(symbolOf(name) ?? name), isPast && ', total error');
   }
   heading('Status');
