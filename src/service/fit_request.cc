@@ -245,7 +245,12 @@ ResultOrProblem<void> CheckCoding(const HttpRequest& request) {
 
 ResultOrProblem<void> CheckSize(const NamedBytes& data, const RequestLimits& limits) {
   const auto lines = static_cast<std::size_t>(std::ranges::count(data.bytes, '\n'));
-  if (lines <= limits.max_samples && data.bytes.size() <= kMaxRecordingBytes) return {};
+  if (data.bytes.size() > kMaxRecordingBytes) {
+    return Refused(ProblemKind::kTooLarge, data.name + ": the recording is larger than " +
+                                               SizeText(kMaxRecordingBytes) +
+                                               "; send a part of it, or use fit_pendulum");
+  }
+  if (lines <= limits.max_samples) return {};
   return Refused(ProblemKind::kTooLarge, data.name + ": the recording has " + std::to_string(lines) +
                                              " lines, but this service accepts at most " +
                                              std::to_string(limits.max_samples) +

@@ -182,13 +182,20 @@ Json AssumptionsJson(const std::vector<Warning>& assumptions) {
   return list;
 }
 
+/// How a swing begins. Only the fit tells a short hold from motion, or a noisy hold from an unsteady one.
+std::string BeginsText(const WindowBegin& begins) {
+  const bool may_be_hold =
+      begins.reason == WindowBegin::Reason::kInMotion || begins.reason == WindowBegin::Reason::kUnsteadyHold;
+  return Sentence(begins) + (may_be_hold ? ", unless the fit finds a hold" : "");
+}
+
 Json WindowJson(const Preview& preview) {
   if (preview.release == 0) return nullptr;
   const FreeSwing& swing = preview.swings.at(static_cast<std::size_t>(preview.release) - 1);
   Json releases = Json::array();
   for (const FreeSwing& found : preview.swings) releases.push_back({found.from, found.to});
   return {{"window_s", {swing.from, swing.to}},
-          {"begins", TextOrNull(Sentence(swing.begins))},
+          {"begins", TextOrNull(BeginsText(swing.begins))},
           {"ends", TextOrNull(Sentence(swing.ends))},
           {"release", preview.release},
           {"releases", std::move(releases)}};

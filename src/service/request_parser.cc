@@ -9,6 +9,7 @@
 
 #include <boost/asio/buffer.hpp>
 
+#include "pendulum/base/format.h"
 #include "pendulum/service/media_type.h"
 
 namespace pendulum::wire {
@@ -41,9 +42,7 @@ std::optional<std::string> WrongByte(std::string_view bytes, std::size_t i) {
 
 }  // namespace
 
-Refused BodyTooLong(std::size_t max_body) {
-  return {413, "the request's body is longer than " + std::to_string(max_body) + " bytes"};
-}
+Refused BodyTooLong(std::size_t max_body) { return {413, "the request's body is longer than " + SizeText(max_body)}; }
 
 Refused TooMuchAtOnce() { return {429, "too many bytes are being received and sent; try again later"}; }
 

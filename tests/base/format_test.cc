@@ -60,6 +60,11 @@ struct Named {
   std::string name;
 };
 
+TEST(SizeText, CountsWholeMebibytes) {
+  EXPECT_EQ(SizeText(33554432), "32 MiB");
+  EXPECT_EQ(SizeText(1000), "1000 bytes");
+}
+
 TEST(NameList, JoinsNamesForASentence) {
   EXPECT_EQ(NameList(std::vector<Named>{}), "");
   EXPECT_EQ(NameList(std::vector<Named>{{"inertia"}}), "inertia");

@@ -30,6 +30,9 @@ std::string Quoted(std::string_view text);
 /// A text with a capital first letter, if that is one of a to z.
 std::string Capitalized(std::string text);
 
+/// "512 MiB", or bytes if they are not whole MiB.
+std::string SizeText(std::size_t bytes);
+
 /// A word of a command for a POSIX shell: in single quotes if it has special characters.
 std::string ShellWord(const std::string& word);
 

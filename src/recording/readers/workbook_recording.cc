@@ -31,12 +31,6 @@ std::string SaveLess(WorkbookWords words) {
   return "; save only the " + std::string(words.sheet) + " with the times and the angles, or export it as CSV";
 }
 
-/// "512 MiB", or bytes if they are not whole MiB.
-std::string SizeText(std::size_t bytes) {
-  constexpr std::size_t kMiB = std::size_t{1} << 20;
-  return bytes % kMiB == 0 ? std::to_string(bytes / kMiB) + " MiB" : std::to_string(bytes) + " bytes";
-}
-
 /// A million rows take some seconds, and their file is compressed to a tenth. Several copies of the text exist until
 /// the answer is complete.
 ChildLimits LimitsForWorkbook(std::size_t bytes, std::size_t max_unpacked) {

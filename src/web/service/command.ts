@@ -4,18 +4,22 @@ import type { FitRequest } from './types';
 /** A word, quoted for a POSIX shell if needed. */
 const quoted = (word: string): string => (/^[\w.,:=/+-]+$/.test(word) ? word : `'${word.replace(/'/g, "'\\''")}'`);
 
-/** The command line that makes the same fit from the downloaded recording. */
+/** The commands that make the same fit from the downloaded recording. The first ones write the rig and the calibration. */
 export function commandOf({
-  name,
+  file,
   options,
   rig,
   calibration,
-}: Pick<FitRequest, 'name' | 'options' | 'rig' | 'calibration'>): string {
-  const words = ['fit_pendulum', '--data', quoted(name)];
-  if (rig) words.push('--rig', 'rig.json');
-  if (calibration) words.push('--calibration', 'calibration.json');
+}: Pick<FitRequest, 'file' | 'options' | 'rig' | 'calibration'>): string {
+  const words = ['fit_pendulum', '--data', quoted(file)];
+  const lines: string[] = [];
+  for (const [flag, content] of Object.entries({ rig, calibration })) {
+    if (!content) continue;
+    lines.push(`printf '%s\\n' ${quoted(JSON.stringify(content))} > ${flag}.json\n`);
+    words.push(`--${flag}`, `${flag}.json`);
+  }
   for (const [flag, value] of Object.entries(options)) {
     if (flag !== 'name') words.push(`--${flag === 'models' ? 'model' : flag}`, quoted(String(value)));
   }
-  return words.join(' ');
+  return lines.join('') + words.join(' ');
 }

@@ -361,9 +361,11 @@ describe('files and commands', () => {
   });
 
   test('the command is safe to paste into a shell', () => {
-    const request = { name: "it's.csv", options: { model: 'viscous,coulomb', from: '2' }, rig: {}, calibration: null };
+    const options = { name: 'Heavy bob', model: 'viscous,coulomb', from: '2' };
+    const request = { file: "it's.csv", options, rig: { name: "Ada's" }, calibration: null };
     expect(commandOf(request)).toBe(
-      "fit_pendulum --data 'it'\\''s.csv' --rig rig.json --model viscous,coulomb --from 2",
+      "printf '%s\\n' '{\"name\":\"Ada'\\''s\"}' > rig.json\n" +
+        "fit_pendulum --data 'it'\\''s.csv' --rig rig.json --model viscous,coulomb --from 2",
     );
   });
 

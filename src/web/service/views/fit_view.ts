@@ -61,6 +61,7 @@ function showReport(
   again: HTMLElement,
 ): void {
   const problems = alertPlace();
+  for (const recording of result.recordings) recording.path ??= request.file;
   const report = makeReport(result, series, { command: commandOf(request) }, told);
   const content = reportContent(report, request.name);
   const { sections } = content;
