@@ -2,7 +2,7 @@
 # The licences of third-party code in the tools and libraries. pendulum_packages is this folder.
 
 # Third-party code that is compiled in or linked, except the compiler's own libraries. These are Debian packages, each
-# with its copyright in /usr/share/doc. licences/ has those that are missing there: for uPlot in the pages, and for
+# with its copyright in /usr/share/doc. licences/ has those that are missing there: for uPlot and uqr in the pages, and for
 # Boost, whose licence in Debian is one among those of thousands of unused files.
 set(pendulum_third_parties
   libceres-dev

@@ -61,6 +61,10 @@ def packages_of_headers():
     return set(owners({path.resolve() for path in found}).values())
 
 
+# Named by a text in src/packages/licences, not by that of a Debian package.
+OWN_TEXTS = {"boost", "uplot", "uqr"}
+
+
 class LicencesTest(packed.DebianFilesTest):
     @classmethod
     def setUpClass(cls):
@@ -69,7 +73,7 @@ class LicencesTest(packed.DebianFilesTest):
         cls.named = set(re.findall(r"^=+\n(\S+)\n=+$", cls.text, re.MULTILINE))
         # Texts in src/packages/licences also represent packages: boost is built by Debian from the source package
         # boost1.74.
-        cls.sources = {debian_source(name) for name in cls.named - {"boost", "uplot"}} | {"boost1.74"}
+        cls.sources = {debian_source(name) for name in cls.named - OWN_TEXTS} | {"boost1.74"}
 
     def test_every_linked_library_is_named(self):
         linked = {tool.name: libraries(tool) for tool in (self.root / "usr/bin").iterdir()}
@@ -90,12 +94,13 @@ class LicencesTest(packed.DebianFilesTest):
 
     def test_the_sources_of_the_pages_are_named(self):
         page = json.loads((SOURCES / "web/package.json").read_text())
-        self.assertEqual(set(page["dependencies"]), {"uplot"})
-        self.assertIn("uplot", self.named)
-        self.assertIn("Copyright (c) 2022 Leon Sorokin", self.text)
+        self.assertEqual(set(page["dependencies"]), {"uplot", "uqr"})
+        for name, owner in (("uplot", "Copyright (c) 2022 Leon Sorokin"), ("uqr", "Copyright (c) Project Nayuki")):
+            self.assertIn(name, self.named)
+            self.assertIn(owner, self.text)
 
     def test_licence_texts_are_complete(self):
-        for name in self.named - {"boost", "uplot"}:
+        for name in self.named - OWN_TEXTS:
             self.assertIn(pathlib.Path(f"/usr/share/doc/{name}/copyright").read_text(), self.text, name)
         self.assertIn("Boost Software License - Version 1.0", self.text)
         self.assertTrue(self.text.startswith("pendulum: "))

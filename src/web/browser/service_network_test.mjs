@@ -5,6 +5,8 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import { test } from 'node:test';
 
+import jsQR from 'jsqr';
+
 import { assertAccessible, ink } from './page.mjs';
 import { dataset, drop, openView, readDataset, shownFit, startService, write } from './service_server.mjs';
 
@@ -42,6 +44,38 @@ test('a token is asked for once, and again when it is wrong', async (t) => {
     await (await fetch(`${service.url}/v1/fits/${id}`, { headers })).text(),
   );
   assert.doesNotMatch(page.url(), /horse/);
+  await service.stop();
+});
+
+test('a link and its QR code carry the token to another device, and it stays in no address', async (t) => {
+  const token = 'a+b&c#d=e-horse%20';
+  const service = await startService('--token_file', write('token', `${token}\n`));
+  const page = await openView(t, service, '/', { refused: ['status of 401'] });
+  assert.equal(await page.getByRole('button', { name: 'Use on another device' }).count(), 0); // hidden
+  await page.getByRole('dialog').getByLabel('Token', { exact: true }).fill(token);
+  await page.keyboard.press('Enter');
+  await page.getByRole('button', { name: 'Use on another device' }).click();
+  const dialog = page.getByRole('dialog', { name: 'Use on another device' });
+  await assertAccessible(page);
+  const link = await dialog.getByLabel('Link', { exact: true }).inputValue();
+  const { data, width, height } = await dialog.locator('.qr').evaluate(async (drawn) => {
+    const image = new Image();
+    const text = new XMLSerializer().serializeToString(drawn);
+    image.src = `data:image/svg+xml,${encodeURIComponent(text.replace('<svg ', '<svg width="400" height="400" '))}`;
+    await image.decode();
+    const canvas = new OffscreenCanvas(400, 400).getContext('2d');
+    canvas.drawImage(image, 0, 0, 400, 400);
+    return { data: [...canvas.getImageData(0, 0, 400, 400).data], width: 400, height: 400 };
+  });
+  assert.equal(jsQR(Uint8ClampedArray.from(data), width, height).data, link);
+  const other = await openView(t, service, link.slice(service.url.length));
+  await other.getByRole('button', { name: /^Try it/ }).first().waitFor();
+  assert.equal(other.url(), `${service.url}/`);
+  assert.equal(await other.evaluate(() => history.length), 2); // the blank page before it, and this one
+  await other.getByRole('link', { name: 'Past fits' }).click();
+  await other.getByText('There are no such fits.').waitFor();
+  assert.equal(await other.locator('dialog').count(), 0);
+  assert.doesNotMatch(service.log(), /horse/);
   await service.stop();
 });
 

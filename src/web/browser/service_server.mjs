@@ -52,6 +52,7 @@ export async function startService(...flags) {
   assert.ok(url, `serve_pendulum did not say where it listens, but: ${first}`);
   const service = {
     url,
+    log: () => log.join(''),
     async stop() {
       running.delete(service);
       child.kill('SIGTERM');

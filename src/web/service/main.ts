@@ -10,8 +10,9 @@ import { embedded, start } from '../shared/embedded';
 import { guideAt } from '../shared/guide';
 import { wordWith } from '../shared/prose';
 import { inFields, setFlags, type FormFlag } from './flag_words';
-import { missing, startRouter } from './router';
+import { again, missing, startRouter } from './router';
 import type { Route } from './routes';
+import { takeToken } from './server/token';
 import type { View } from './shell';
 import { batchView } from './views/batch_view';
 import { calibrationView } from './views/calibration_view';
@@ -46,5 +47,9 @@ wordWith(inFields);
 guideAt('/docs/');
 start('service', 'page', (root) => {
   setFlags(embedded<FormFlag[]>('flags') ?? []);
+  takeToken();
   startRouter(root, viewOf);
+  window.addEventListener('hashchange', () => {
+    if (takeToken()) again();
+  });
 });

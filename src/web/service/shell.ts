@@ -3,6 +3,7 @@
 
 import { el, text } from '../shared/dom';
 import { startTheme, themeButton } from '../shared/theme';
+import { inviteButton } from './invite';
 import { parseRoute, type Route } from './routes';
 import { waitingPlace } from './waiting';
 
@@ -67,6 +68,7 @@ export function makeShell(root: HTMLElement): Shell {
     'footer',
     { class: 'foot' },
     text('Moment of inertia and friction of a pendulum, with error bars, from a recording of its free swing.', 'quiet'),
+    inviteButton(),
   );
   root.replaceChildren(el('div', { class: 'page service' }, skip, header, waitingPlace(), main, said, footer));
   const say = (words: string): void => {

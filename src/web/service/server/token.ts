@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/** The token of the service. The page asks for it if it is missing or wrong, and keeps it until the tab is closed. */
+/**
+ * The token of the service. A link may carry it; otherwise the page asks for it if it is missing or wrong. It is kept
+ * until the tab is closed.
+ */
 
 import { button, el, text } from '../../shared/dom';
 import { Cancelled } from './problem';
@@ -9,6 +12,30 @@ let asked: Promise<void> | null = null;
 
 /** Empty if none was entered. */
 export const token = (): string => sessionStorage.getItem(kKey) ?? '';
+
+export const hasToken = (): boolean => token() !== '';
+
+const kGiven = 'token';
+
+/** Calls `changed` whenever a token is given. */
+export const onToken = (changed: () => void): void => document.addEventListener(kGiven, changed);
+
+function keep(words: string): void {
+  sessionStorage.setItem(kKey, words);
+  document.dispatchEvent(new Event(kGiven));
+}
+
+/** The address of the first view with the token in its fragment, which browsers do not send to servers. */
+export const addressWithToken = (): string => `${location.origin}/#${String(new URLSearchParams({ token: token() }))}`;
+
+/** Takes the token out of an address that carries it, and out of the history. Whether there was one. */
+export function takeToken(): boolean {
+  const given = new URLSearchParams(location.hash.slice(1)).get('token');
+  if (given === null) return false;
+  keep(given);
+  history.replaceState(null, '', location.pathname + location.search);
+  return true;
+}
 
 function openDialog(refused: boolean, given: (words: string) => void, cancelled: () => void): void {
   const input = el('input', { type: 'password', autocomplete: 'current-password', required: '', id: 'token' });
@@ -50,7 +77,7 @@ function openDialog(refused: boolean, given: (words: string) => void, cancelled:
 export function askToken(refused: boolean): Promise<void> {
   asked ??= new Promise<void>((resolve, reject) => {
     const given = (words: string): void => {
-      sessionStorage.setItem(kKey, words);
+      keep(words);
       resolve();
     };
     openDialog(refused, given, () => reject(new Cancelled('No token was given.')));
