@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { assertRange, ink, kPlot, open, shownRange } from './page.mjs';
+import { assertAccessible, assertRange, ink, kPlot, open, shownRange } from './page.mjs';
 import { makeReport } from './reports.mjs';
 
 test('dragging zooms, the residuals follow, and Show all goes back', async (t) => {
@@ -123,4 +123,52 @@ test('a million samples are drawn and zoomed', { timeout: 600_000 }, async (t) =
   assert.ok(took < 10_000, `${took} ms`); // a page that blocks would take tens of seconds
   const [from, to] = await shownRange(page);
   assert.ok(Math.abs(from - 250) < 1 && Math.abs(to - 750) < 1);
+});
+
+/** The angle of a rod from hanging straight down, rad, positive to the right. */
+const angleOf = async (page, name) => {
+  const turned = await page.locator(`[data-swing=${name}]`).getAttribute('transform');
+  return (-Math.PI / 180) * Number(/^rotate\((.*)\)$/.exec(turned)[1]);
+};
+
+test('the pendulum is where it was measured and fitted, and does not move for readers who prefer that', async (t) => {
+  const content = makeReport();
+  const page = await open(t, content, { context: { reducedMotion: 'reduce' } });
+  await page.getByRole('button', { name: 'Watch it swing' }).click();
+  await page.locator('.pendulum').getByRole('button', { name: 'Play' }).waitFor();
+  await page.locator('.pendulum').getByLabel('Time', { exact: true }).evaluate((slider) => {
+    slider.value = '5';
+    slider.dispatchEvent(new Event('input'));
+  });
+  const time = Number(await page.locator('.pendulum').getByLabel('Time', { exact: true }).inputValue());
+  const [series] = content.series;
+  const next = series.time_s.findIndex((each) => each >= time);
+  const share = (time - series.time_s[next - 1]) / (series.time_s[next] - series.time_s[next - 1]);
+  const { recommended: model } = content.result.comparison;
+  const own = content.result.recordings[0].fits.find((fit) => fit.model === model);
+  const zero = own.parameters.zero_angle.estimate;
+  for (const [name, values] of [['measured', series.measured], [model, series.models[model].fitted]]) {
+    const angle = values[next - 1] + share * (values[next] - values[next - 1]) - zero;
+    const shown = await angleOf(page, name);
+    assert.ok(Math.abs(shown - angle) < 1e-9, `${name}: ${shown} is not ${angle}`);
+  }
+  assert.match(await page.locator('#fit .readout').textContent(), new RegExp(`^t = ${time.toFixed(1)}`)); // the plot's cursor
+  await assertAccessible(page);
+});
+
+test('the pendulum swings at true speed until it is stopped', async (t) => {
+  const page = await open(t, makeReport());
+  await page.getByRole('button', { name: 'Watch it swing' }).click();
+  const now = () => page.evaluate(() => [performance.now() / 1000, Number(document.querySelector('.pendulum input').value)]);
+  await page.waitForFunction(() => Number(document.querySelector('.pendulum input').value) > 0.2);
+  const [began, from] = await now();
+  await page.waitForFunction((from) => Number(document.querySelector('.pendulum input').value) > from + 0.5, from);
+  const [ended, to] = await now();
+  assert.ok(Math.abs(to - from - (ended - began)) < 0.2, `${to - from} s in ${ended - began} s`);
+  await page.locator('.pendulum').getByRole('button', { name: 'Pause' }).click();
+  const stopped = await now();
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  assert.equal((await now())[1], stopped[1]);
+  await page.getByRole('button', { name: 'Watch it swing' }).click();
+  assert.equal(await page.locator('.pendulum').count(), 0);
 });

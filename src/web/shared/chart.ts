@@ -91,6 +91,11 @@ export class Chart {
     return this.plot?.posToVal(px, 'x') ?? NaN;
   }
 
+  /** Places the cursor at an x value, as the pointer does; null removes it. */
+  pointAt(x: number | null): void {
+    this.plot?.setCursor({ left: x === null ? -10 : this.plot.valToPos(x, 'x'), top: x === null ? -10 : 0 });
+  }
+
   /** Whether the plot was removed from the page. It does not draw any more. */
   get removed(): boolean {
     return this.wasThere && !this.host.isConnected;

@@ -13,6 +13,7 @@ import { table } from '../../shared/table';
 import type { TimeView } from '../../shared/time_view';
 import { inDegrees, quantityOf, shownUnit, unitText, withUnit } from '../../shared/units';
 import { rankOf, sharedView, shownFitOf, type OneRecording, type RecordedFit } from '../report';
+import { SwingAnimation, swingsOf } from '../swing_animation';
 import { TimePlot, type Trace } from '../time_plot';
 
 /** A unit for residuals, and its label. */
@@ -148,7 +149,7 @@ class FitPlots {
   private readonly line = el('p', { class: 'readout', 'aria-hidden': 'true' }, '\u00a0');
 
   constructor(
-    one: OneRecording,
+    private readonly one: OneRecording,
     private readonly samples: Samples,
   ) {
     this.view = sharedView(one, samples);
@@ -225,8 +226,27 @@ class FitPlots {
     this.below?.chart.rebuild();
   };
 
+  /** A button that shows the pendulum beside the plots; null if no motion is known. */
+  private swingButton(panel: HTMLElement): HTMLElement | null {
+    const fitted = modelMark(rankOf(this.one.report.result, this.one.report.shown));
+    const swings = swingsOf(this.one, this.samples, kMeasured, fitted);
+    if (swings.length === 0) return null;
+    let animation: SwingAnimation | null = null;
+    return toggle(['Watch it swing'], false, (on) => {
+      animation?.stop();
+      const scale = this.one.data.clock_scale || 1;
+      animation = on ? new SwingAnimation(swings, this.view, scale, (time) => this.main.chart.pointAt(time)) : null;
+      panel.replaceChildren(...(animation ? [animation.element] : []));
+      if (!on) this.main.chart.pointAt(null);
+    });
+  }
+
   element(): HTMLElement {
-    const bar = el('div', { class: 'bar' }, legend(this.traces.fitted, this.change), navigationButtons(this.view));
+    const panel = el('div', { class: 'swing-panel' });
+    const curves = legend(this.traces.fitted, this.change);
+    const watch = this.swingButton(panel);
+    if (watch) curves.append(watch);
+    const bar = el('div', { class: 'bar' }, curves, navigationButtons(this.view));
     const box = keyboardBox('Measured and fitted, and residuals', this.view, this.main.chart.withButtons());
     if (this.below)
       box.append(
@@ -251,7 +271,7 @@ class FitPlots {
     return el(
       'div',
       {},
-      figure(caption, box, bar),
+      el('div', { class: 'beside-swing' }, figure(caption, box, bar), panel),
       details('Samples as a table', () => sampleTable(this.samples, this.traces.fitted, this.view)),
     );
   }
