@@ -55,17 +55,16 @@ constexpr std::array<StartWord, 3> kStarts = {{{"auto", std::nullopt, "found in 
                                                {"release", StartKind::kRelease, "held at rest, then released"},
                                                {"moving", StartKind::kMoving, "already swinging"}}};
 using GravityWord = Word<std::optional<Gravity>>;
-constexpr std::array<GravityWord, 3> kGravities = {
-    {{"auto", std::nullopt, "gravity, unless the recording shows a spring"},
-     {"sin", Gravity::kSine, "gravity: a pendulum"},
-     {"linear", Gravity::kLinear, "a spring or wire: torsion pendulum, Pohl wheel, mass on a spring"}}};
+constexpr std::array<GravityWord, 3> kGravities = {{{"auto", std::nullopt, "gravity, or a spring if one shows"},
+                                                    {"sin", Gravity::kSine, "gravity: a pendulum"},
+                                                    {"linear", Gravity::kLinear, "a spring, or a torsion wire"}}};
 using NoiseWord = Word<std::optional<NoiseFamily>>;
 constexpr std::array<NoiseWord, 5> kNoises = {
     {{"auto", std::nullopt, "found in the recording"},
      {"gaussian", NoiseFamily::kGaussian, "even scatter"},
      {"quantized", NoiseFamily::kQuantized, "rounding to the steps of the sensor"},
-     {"averaged", NoiseFamily::kAveraged, "means of several readings in whole counts"},
-     {"edges", NoiseFamily::kEdges, "edges of an encoder’s counts, a row for each change"}}};
+     {"averaged", NoiseFamily::kAveraged, "means of several readings"},
+     {"edges", NoiseFamily::kEdges, "edges of an encoder’s counts"}}};
 constexpr std::array<NoiseWord, 3> kLosses = {{{"none", std::nullopt, "there are none"},
                                                {"huber", NoiseFamily::kHuber, "count less (Huber)"},
                                                {"student", NoiseFamily::kStudent, "are expected (Student’s t)"}}};

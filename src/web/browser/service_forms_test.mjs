@@ -183,3 +183,20 @@ test('windows of one recording are compared on its own clock', async (t) => {
   await plot.locator('canvas').waitFor();
   assert.match(await plot.getAttribute('aria-label'), /over time from 0\.?0* to 14\.?0* s/);
 });
+
+for (const width of [1280, 390]) {
+  test(`no word of a menu is cut, ${width} px wide`, async (t) => {
+    const page = await openView(t, service, '/', { context: { viewport: { width, height: 844 } } });
+    await page.getByText('Further options', { exact: true }).click();
+    const cut = await page.locator('select:visible').evaluateAll((menus) =>
+      menus.flatMap((menu) => {
+        const { font, paddingLeft } = getComputedStyle(menu);
+        const ruler = document.createElement('canvas').getContext('2d');
+        ruler.font = font;
+        const room = menu.clientWidth - 2 * parseFloat(paddingLeft) - 16; // without the arrow
+        return [...menu.options].map(({ text }) => text).filter((text) => ruler.measureText(text).width > room);
+      }),
+    );
+    assert.deepEqual(cut, []);
+  });
+}
